@@ -1,0 +1,38 @@
+//! Flat space.
+
+use nalgebra::SVector;
+
+use crate::manifold::{CutLocus, Manifold};
+
+/// ℝᴺ with the ordinary distance; points and tangents are vectors.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Euclidean<const N: usize>;
+
+/// The plane.
+pub type R2 = Euclidean<2>;
+/// Space.
+pub type R3 = Euclidean<3>;
+
+impl<const N: usize> Manifold for Euclidean<N> {
+    type Point = SVector<f64, N>;
+    type Tangent = SVector<f64, N>;
+
+    fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
+        p + v
+    }
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
+        Ok(q - p)
+    }
+    fn inner(&self, _: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
+        u.dot(&v)
+    }
+    fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
+        (q - p).norm()
+    }
+    fn injectivity_radius(&self) -> f64 {
+        f64::INFINITY
+    }
+    fn is_finite(&self, p: &Self::Point) -> bool {
+        p.iter().all(|x| x.is_finite())
+    }
+}

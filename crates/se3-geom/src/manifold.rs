@@ -1,0 +1,64 @@
+//! The trait that every space implements.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A tangent vector: plain data that adds and scales.
+pub trait Tangent:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<f64, Output = Self>
+{
+}
+impl<T> Tangent for T where T: Copy + Add<Output = T> + Sub<Output = T> + Neg<Output = T> + Mul<f64, Output = T> {}
+
+/// Two points between which the shortest geodesic is not unique, so that no logarithm exists.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "the points lie on each other's cut locus (distance {distance}): the shortest geodesic between them is not unique"
+)]
+pub struct CutLocus {
+    /// Geodesic distance of the two points.
+    pub distance: f64,
+}
+
+/// A Riemannian manifold with its metric.
+///
+/// The required methods are the minimum; everything else is deduced once, here.
+pub trait Manifold {
+    /// A point, as plain data.
+    type Point: Clone + std::fmt::Debug;
+    /// A tangent vector, in the coordinates that the implementor documents.
+    type Tangent: Tangent + std::fmt::Debug;
+
+    /// The point reached from `p` after unit time along the geodesic with initial velocity `v`.
+    fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point;
+
+    /// The initial velocity of the shortest geodesic that leads from `p` to `q` in unit time.
+    ///
+    /// # Errors
+    /// [`CutLocus`] where that geodesic is not unique up to rounding.
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus>;
+
+    /// Inner product of two tangent vectors at `p`.
+    fn inner(&self, p: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64;
+
+    /// Geodesic distance. Total: defined on the cut locus too.
+    fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64;
+
+    /// The greatest radius within which `log` is unique around every point, or a lower bound of it.
+    fn injectivity_radius(&self) -> f64;
+
+    /// Whether every coordinate of the point is a finite number.
+    fn is_finite(&self, p: &Self::Point) -> bool;
+
+    /// Length of a tangent vector at `p`: √⟨v, v⟩.
+    fn norm(&self, p: &Self::Point, v: Self::Tangent) -> f64 {
+        self.inner(p, v, v).max(0.0).sqrt()
+    }
+
+    /// The point at fraction `t` of the shortest geodesic from `p` (t = 0) to `q` (t = 1).
+    ///
+    /// # Errors
+    /// [`CutLocus`] where that geodesic is not unique.
+    fn geodesic(&self, p: &Self::Point, q: &Self::Point, t: f64) -> Result<Self::Point, CutLocus> {
+        Ok(self.exp(p, self.log(p, q)? * t))
+    }
+}

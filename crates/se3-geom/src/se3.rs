@@ -1,0 +1,72 @@
+//! Poses as a Riemannian manifold.
+
+use crate::manifold::{CutLocus, Manifold};
+use crate::pose::Pose;
+use crate::so3::So3;
+use crate::twist::Twist;
+
+/// SE(3) with the left-invariant product metric d² = α‖log(R₁ᵀR₂)‖² + β‖p₂ − p₁‖² (thesis eq. 4.17, with the square that
+/// (7.4) lacks).
+///
+/// Tangents at a pose are body twists: `linear` = Rᵀṗ, `angular` = ω with Ṙ = R\[ω\]. Geodesics are slerp plus a straight line,
+/// and are the same for every α and β; distances, and so orders, are not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Se3 {
+    alpha: f64,
+    beta: f64,
+}
+
+impl Se3 {
+    /// The metric with weights α in rad⁻² and β in m⁻², both positive and finite; `None` otherwise.
+    pub fn with_weights(alpha: f64, beta: f64) -> Option<Self> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        (positive(alpha) && positive(beta)).then_some(Self { alpha, beta })
+    }
+
+    /// The metric in metres where one radian counts as much as `length_m` metres: α = L², β = 1.
+    pub fn with_metres_per_radian(length_m: f64) -> Option<Self> {
+        Self::with_weights(length_m * length_m, 1.0)
+    }
+
+    /// L = √(α/β): how many metres count as much as one radian.
+    pub fn metres_per_radian(&self) -> f64 {
+        (self.alpha / self.beta).sqrt()
+    }
+}
+
+impl Default for Se3 {
+    /// α = β = 1: one radian counts as one metre.
+    fn default() -> Self {
+        Self { alpha: 1.0, beta: 1.0 }
+    }
+}
+
+impl Manifold for Se3 {
+    type Point = Pose;
+    type Tangent = Twist;
+
+    fn exp(&self, p: &Pose, v: Twist) -> Pose {
+        let translation = p.translation.vector + p.rotation * v.linear;
+        Pose::from_parts(translation.into(), So3.exp(&p.rotation, v.angular))
+    }
+    fn log(&self, p: &Pose, q: &Pose) -> Result<Twist, CutLocus> {
+        let angular = So3.log(&p.rotation, &q.rotation).map_err(|_| CutLocus { distance: self.distance(p, q) })?;
+        let linear = p.rotation.inverse() * (q.translation.vector - p.translation.vector);
+        Ok(Twist { linear, angular })
+    }
+    fn inner(&self, _: &Pose, u: Twist, v: Twist) -> f64 {
+        self.alpha * u.angular.dot(&v.angular) + self.beta * u.linear.dot(&v.linear)
+    }
+    fn distance(&self, p: &Pose, q: &Pose) -> f64 {
+        let angle = So3.distance(&p.rotation, &q.rotation);
+        let squared_length = (q.translation.vector - p.translation.vector).norm_squared();
+        (self.alpha * angle * angle + self.beta * squared_length).sqrt()
+    }
+    /// π√α: half a turn at a standstill is the nearest cut point.
+    fn injectivity_radius(&self) -> f64 {
+        So3.injectivity_radius() * self.alpha.sqrt()
+    }
+    fn is_finite(&self, p: &Pose) -> bool {
+        So3.is_finite(&p.rotation) && p.translation.vector.iter().all(|x| x.is_finite())
+    }
+}
