@@ -1,2 +1,40 @@
-//! (to be written)
-fn main() {}
+//! The `reorder` command: orders poses, and plans trajectories through them.
+
+mod failure;
+mod order;
+mod output;
+mod plan;
+mod source;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(version, about = "Poses in any order come in; an ordered, C2, executable trajectory goes out.")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Recover the order of points sampled from a curve
+    Order(order::Arguments),
+    /// Plan an audited joint trajectory through unordered poses
+    Plan(plan::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Order(arguments) => order::run(&arguments),
+        Command::Plan(arguments) => plan::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{failure}");
+            failure.exit_code()
+        }
+    }
+}

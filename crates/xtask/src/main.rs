@@ -1,2 +1,44 @@
-//! (to be written)
-fn main() {}
+//! Every chore of the project, as `cargo xtask CHORE`.
+
+mod demo;
+mod env;
+mod failure;
+mod mujoco;
+mod python;
+mod ros;
+mod setup;
+mod test;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Chores of the reorder workspace.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+enum Chore {
+    /// Put ROS 2, MuJoCo and Python packages into .deps (idempotent, resumable)
+    Setup,
+    /// Set up, build, and run the main job for real: recorded poses, ROS 2, the node, MuJoCo
+    Demo,
+    /// Set up, then run clippy and rustdoc over the workspace with warnings as errors
+    Lint,
+    /// Set up, then run every test there is
+    Test,
+}
+
+fn main() -> ExitCode {
+    let layout = env::Layout::of_this_checkout();
+    let outcome = match Chore::parse() {
+        Chore::Setup => setup::run(&layout),
+        Chore::Demo => demo::run(&layout),
+        Chore::Lint => test::lint(&layout),
+        Chore::Test => test::test(&layout),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}

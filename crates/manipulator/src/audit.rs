@@ -1,0 +1,115 @@
+//! Whether a trajectory may be executed.
+
+use serde::Serialize;
+
+use crate::robot::{Limits, Robot};
+use crate::trajectory::JointTrajectory;
+
+/// Peak over limit, the greatest of all joints; at most 1 where the limit holds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MaxRatio {
+    /// Of joint velocities.
+    pub velocity: f64,
+    /// Of joint accelerations.
+    pub acceleration: f64,
+    /// Of joint jerks.
+    pub jerk: f64,
+}
+
+/// What an audit of a trajectory found.
+///
+/// Peaks are those of the quintics between the points, found exactly (extremes of polynomials), so that they are at least those on
+/// any grid.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Audit {
+    /// Whether every check below holds: ratios at most 1, margin not negative, times increase, rest at both ends.
+    pub limits_ok: bool,
+    /// Peak over limit.
+    pub max_ratio: MaxRatio,
+    /// Least distance of any joint to a position limit, in rad (m for prismatic joints); negative beyond it.
+    pub position_margin: f64,
+    /// Whether times are finite, start at 0 and strictly increase.
+    pub times_increase: bool,
+    /// Whether velocity and acceleration are exactly zero at both ends.
+    pub starts_and_ends_at_rest: bool,
+    /// Duration in s.
+    pub duration_s: f64,
+    /// Number of points.
+    pub points: usize,
+}
+
+/// Peak over limit of one joint between two points.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Peaks {
+    /// Velocity, acceleration, jerk.
+    pub(crate) ratios: [f64; 3],
+    pub(crate) margin: f64,
+}
+
+/// Judges the trajectory that a controller would execute against the robot's limits. Numbers that are not finite fail every check.
+pub fn audit(robot: &Robot, trajectory: &JointTrajectory) -> Audit {
+    against(&robot.limits, trajectory)
+}
+
+pub(crate) fn against(limits: &Limits, trajectory: &JointTrajectory) -> Audit {
+    let points = &trajectory.points;
+    let dof = limits.lower.len();
+    let complete = !points.is_empty()
+        && points.iter().all(|p| {
+            let values = p.positions.iter().chain(&p.velocities).chain(&p.accelerations);
+            [&p.positions, &p.velocities, &p.accelerations].iter().all(|v| v.len() == dof)
+                && values.chain([&p.time_s]).all(|x| x.is_finite())
+        });
+    let times_increase =
+        complete && points[0].time_s == 0.0 && points.windows(2).all(|pair| pair[1].time_s > pair[0].time_s);
+    let mut audit = Audit {
+        limits_ok: false,
+        max_ratio: MaxRatio { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY },
+        position_margin: f64::NEG_INFINITY,
+        times_increase,
+        starts_and_ends_at_rest: false,
+        duration_s: trajectory.duration_s(),
+        points: points.len(),
+    };
+    if !times_increase {
+        return audit;
+    }
+    let ends = [&points[0], &points[points.len() - 1]];
+    audit.starts_and_ends_at_rest = ends.iter().all(|p| p.velocities.iter().chain(&p.accelerations).all(|&x| x == 0.0));
+    let mut ratios = [0.0_f64; 3];
+    let mut margin = f64::INFINITY;
+    for (j, &q) in points[0].positions.iter().enumerate() {
+        margin = margin.min(q - limits.lower[j]).min(limits.upper[j] - q);
+    }
+    for interval in 0..points.len() - 1 {
+        for peaks in peaks(limits, trajectory, interval) {
+            margin = margin.min(peaks.margin);
+            ratios.iter_mut().zip(peaks.ratios).for_each(|(worst, ratio)| *worst = worst.max(ratio));
+        }
+    }
+    audit.max_ratio = MaxRatio { velocity: ratios[0], acceleration: ratios[1], jerk: ratios[2] };
+    audit.position_margin = margin;
+    // Inverse kinematics may end on a limit up to rounding.
+    audit.limits_ok = ratios.iter().all(|&ratio| ratio <= 1.0) && margin >= -1e-9 && audit.starts_and_ends_at_rest;
+    audit
+}
+
+/// The peaks of every joint between point `interval` and the next.
+pub(crate) fn peaks<'a>(
+    limits: &'a Limits,
+    trajectory: &'a JointTrajectory,
+    interval: usize,
+) -> impl Iterator<Item = Peaks> + 'a {
+    trajectory.quintics(interval).enumerate().map(|(j, quintic)| {
+        let [position, velocity, acceleration, jerk] = quintic.ranges();
+        let peak = |(low, high): (f64, f64)| high.max(-low);
+        Peaks {
+            ratios: [
+                peak(velocity) / limits.velocity[j],
+                peak(acceleration) / limits.acceleration[j],
+                peak(jerk) / limits.jerk[j],
+            ],
+            margin: (position.0 - limits.lower[j]).min(limits.upper[j] - position.1),
+        }
+    })
+}

@@ -1,0 +1,215 @@
+//! Everything that can go wrong between a robot description and a legal trajectory.
+
+/// Why there is no robot, no joint path or no trajectory. Pose indices count from 0 along the curve.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ManipulatorError {
+    /// No robot of that name is shipped.
+    #[error("there is no shipped robot {name:?}: known are {known}")]
+    UnknownRobot {
+        /// As asked for.
+        name: String,
+        /// Names that exist.
+        known: String,
+    },
+    /// The robot description is no URDF.
+    #[error("the URDF cannot be read: {reason}")]
+    Urdf {
+        /// What the parser says.
+        reason: String,
+    },
+    /// The settings beside the URDF are malformed.
+    #[error("the robot settings cannot be read: {reason}")]
+    Settings {
+        /// What the parser says, with the key.
+        reason: String,
+    },
+    /// A frame that the settings name is no link of the URDF.
+    #[error("the URDF has no link {frame:?}")]
+    MissingFrame {
+        /// The link's name.
+        frame: String,
+    },
+    /// The tool is not a descendant of the base, or nothing moves between them.
+    #[error("no chain of moving joints leads from {base:?} to {tool:?}")]
+    NoChain {
+        /// Base frame.
+        base: String,
+        /// Tool frame.
+        tool: String,
+    },
+    /// A joint on the chain is of a kind that a serial chain of single axes cannot have.
+    #[error("joint {joint:?} is {kind}: only revolute, continuous, prismatic and fixed joints are supported")]
+    UnsupportedJoint {
+        /// Its name.
+        joint: String,
+        /// What it is.
+        kind: String,
+    },
+    /// A figure of a joint is absent or impossible.
+    #[error("joint {joint:?}: {what} is {value}, but must be {must_be}")]
+    InvalidJoint {
+        /// Its name.
+        joint: String,
+        /// Which figure.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What would be right.
+        must_be: &'static str,
+    },
+    /// The settings do not cover a joint of the chain.
+    #[error("the robot settings say nothing about joint {joint:?}: its acceleration and jerk limits are needed")]
+    MissingSettings {
+        /// Its name.
+        joint: String,
+    },
+    /// The settings speak of a joint that the chain does not have.
+    #[error("the robot settings name joint {joint:?}, which is not on the chain")]
+    UnknownJoint {
+        /// Its name.
+        joint: String,
+    },
+    /// A vector has the wrong number of joints.
+    #[error("{what} has {given} values for a robot of {expected} joints")]
+    WrongSize {
+        /// What the vector is.
+        what: &'static str,
+        /// Joints of the robot.
+        expected: usize,
+        /// Values given.
+        given: usize,
+    },
+    /// A number is NaN or infinite.
+    #[error("{what} contains a value that is not a finite number")]
+    NonFinite {
+        /// Where.
+        what: &'static str,
+    },
+    /// An option is out of its range.
+    #[error("option {name} is {value}, but must be {must_be}")]
+    InvalidOption {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its range.
+        must_be: &'static str,
+    },
+    /// Parameters of a joint path do not increase.
+    #[error("path parameter {index} ({value}) does not come after the one before")]
+    ParametersNotIncreasing {
+        /// Which.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The samples of a joint path are spaced so unevenly that no spline through them was found.
+    #[error("the joint path's samples are spaced too unevenly for a spline")]
+    SplineSingular,
+    /// Inverse kinematics of a single pose did not converge within the joint limits.
+    #[error(
+        "the pose is not reached within the joint limits: the nearest tool pose found is {position_error_m:.2e} m and {rotation_error_rad:.2e} rad away"
+    )]
+    IkNotConverged {
+        /// Distance left.
+        position_error_m: f64,
+        /// Angle left.
+        rotation_error_rad: f64,
+    },
+    /// The arm cannot reach a pose of the curve.
+    #[error(
+        "pose {pose} is out of reach: the nearest tool pose found is {position_error_m:.4} m and {rotation_error_rad:.4} rad away"
+    )]
+    Unreachable {
+        /// Index of the pose.
+        pose: usize,
+        /// Distance left.
+        position_error_m: f64,
+        /// Angle left.
+        rotation_error_rad: f64,
+    },
+    /// The way to a pose leads over a joint limit on every branch tried.
+    #[error(
+        "on the way to pose {pose} joint {joint:?} would have to go to {value:.4}, beyond its limits {lower:.4} to {upper:.4}"
+    )]
+    JointLimit {
+        /// Index of the pose.
+        pose: usize,
+        /// The joint.
+        joint: String,
+        /// Position needed, in rad or m.
+        value: f64,
+        /// Lower limit.
+        lower: f64,
+        /// Upper limit.
+        upper: f64,
+    },
+    /// The way to a pose leads through or too near a singular configuration.
+    #[error(
+        "on the way to pose {pose} the arm comes too close to a singularity: least singular value of its Jacobian {singular_value:.2e}, at least {bound:.2e} is asked for"
+    )]
+    Singular {
+        /// Index of the pose.
+        pose: usize,
+        /// Least singular value of the body Jacobian (rows in m and rad).
+        singular_value: f64,
+        /// Bound of the options.
+        bound: f64,
+    },
+    /// The joints do not follow the curve continuously.
+    #[error("on the way to pose {pose} the joints jump by {jump_rad:.3} rad, however finely the curve is sampled")]
+    Jump {
+        /// Index of the pose.
+        pose: usize,
+        /// Deviation of the midpoint that refinement did not remove.
+        jump_rad: f64,
+    },
+    /// The joint spline does not come within tolerance of the curve.
+    #[error(
+        "on the way to pose {pose} the tool path stays {position_error_m:.2e} m and {rotation_error_rad:.2e} rad off the curve, however finely it is sampled"
+    )]
+    PathTolerance {
+        /// Index of the pose.
+        pose: usize,
+        /// Distance left.
+        position_error_m: f64,
+        /// Angle left.
+        rotation_error_rad: f64,
+    },
+    /// The optimiser found no speed profile.
+    #[error("no speed profile was found: {reason}")]
+    Timing {
+        /// What it says.
+        reason: String,
+    },
+    /// Slowing down did not make the trajectory legal; it is withheld.
+    #[error(
+        "the trajectory would break limits after every slowdown (velocity {velocity:.4}, acceleration {acceleration:.4}, jerk {jerk:.4} of the limit, position margin {position_margin:.2e}), so there is none"
+    )]
+    LimitsNotMet {
+        /// Peak over limit.
+        velocity: f64,
+        /// Peak over limit.
+        acceleration: f64,
+        /// Peak over limit.
+        jerk: f64,
+        /// Least distance to a position limit, in rad or m; negative beyond it.
+        position_margin: f64,
+    },
+}
+
+pub(crate) type Result<T> = std::result::Result<T, ManipulatorError>;
+
+impl ManipulatorError {
+    /// Index, along the curve, of the pose that the error is about.
+    pub fn pose(&self) -> Option<usize> {
+        match self {
+            Self::Unreachable { pose, .. }
+            | Self::JointLimit { pose, .. }
+            | Self::Singular { pose, .. }
+            | Self::Jump { pose, .. }
+            | Self::PathTolerance { pose, .. } => Some(*pose),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! A straight move of the joints from rest to rest.
+
+use nalgebra::DVector;
+
+use crate::audit::against;
+use crate::error::{ManipulatorError, Result};
+use crate::robot::Robot;
+use crate::sampling::Sampling;
+use crate::timing::TimingOptions;
+use crate::trajectory::{JointPoint, JointTrajectory};
+
+/// The least duration of the quintic q = D(10τ³ − 15τ⁴ + 6τ⁵), τ = t/T, whose peaks are 15/8·D/T, 10/√3·D/T² and 60·D/T³.
+pub(crate) fn least_duration(distance: f64, velocity: f64, acceleration: f64, jerk: f64) -> f64 {
+    let by_velocity = 1.875 * distance / velocity;
+    let by_acceleration = (10.0 / 3.0_f64.sqrt() * distance / acceleration).sqrt();
+    by_velocity.max(by_acceleration).max((60.0 * distance / jerk).cbrt())
+}
+
+/// The straight line of the joints from `from` to `to`, both of shape (dof), as the quintic of least duration within the limits. The
+/// quintics between its points are pieces of that quintic. Equal ends give a single point at rest.
+///
+/// # Errors
+/// [`ManipulatorError`] for malformed configurations or options, or [`ManipulatorError::LimitsNotMet`] for an end beyond a limit.
+pub fn rest_to_rest(
+    robot: &Robot,
+    from: &DVector<f64>,
+    to: &DVector<f64>,
+    options: &TimingOptions,
+) -> Result<JointTrajectory> {
+    let limits = options.limits(robot)?;
+    robot.check_configuration("the start of the move", from)?;
+    robot.check_configuration("the end of the move", to)?;
+    let distance = to - from;
+    let least = (0..from.len())
+        .map(|i| least_duration(distance[i].abs(), limits.velocity[i], limits.acceleration[i], limits.jerk[i]))
+        .fold(0.0, f64::max);
+    let sampling = Sampling { rate_hz: options.rate_hz, joint_names: robot.chain.joint_names() };
+    // A part in ten thousand keeps rounding of the points below the limits.
+    let (steps, step_ns) = if least > 0.0 { sampling.steps(least * 1.0001) } else { (0, 0) };
+    let duration = Sampling::time(steps, step_ns);
+    let points = (0..=steps)
+        .map(|k| {
+            let tau = if steps == 0 { 0.0 } else { k as f64 / steps as f64 };
+            let way = tau.powi(3) * (10.0 - 15.0 * tau + 6.0 * tau * tau);
+            let (mut speed, mut acceleration) = (0.0, 0.0);
+            if k > 0 && k < steps {
+                speed = 30.0 * tau * tau * (1.0 - tau) * (1.0 - tau) / duration;
+                acceleration = 60.0 * tau * (1.0 - tau) * (1.0 - 2.0 * tau) / (duration * duration);
+            }
+            let position = if k == steps { to.clone() } else { from + &distance * way };
+            JointPoint {
+                time_s: Sampling::time(k, step_ns),
+                positions: position.iter().copied().collect(),
+                velocities: distance.iter().map(|d| d * speed).collect(),
+                accelerations: distance.iter().map(|d| d * acceleration).collect(),
+            }
+        })
+        .collect();
+    let trajectory = JointTrajectory { joint_names: robot.chain.joint_names().to_vec(), points };
+    let found = against(&limits, &trajectory);
+    if found.limits_ok {
+        return Ok(trajectory);
+    }
+    Err(ManipulatorError::LimitsNotMet {
+        velocity: found.max_ratio.velocity,
+        acceleration: found.max_ratio.acceleration,
+        jerk: found.max_ratio.jerk,
+        position_margin: found.position_margin,
+    })
+}

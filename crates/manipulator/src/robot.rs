@@ -1,0 +1,184 @@
+//! A robot: its chain and how hard each joint may be driven.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+use serde::Deserialize;
+
+use crate::chain::Chain;
+use crate::error::{ManipulatorError, Result};
+use crate::urdf::{self, UrdfLimits};
+
+const UR5E: (&str, &str, &str) =
+    ("ur5e", include_str!("../../../config/robots/ur5e.urdf"), include_str!("../../../config/robots/ur5e.yaml"));
+
+/// Limits of every joint, each of shape (dof), in SI units (rad, or m for prismatic joints).
+///
+/// Velocity, acceleration and jerk limits are positive and hold in both directions. Continuous joints have infinite positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    /// Least position.
+    pub lower: DVector<f64>,
+    /// Greatest position.
+    pub upper: DVector<f64>,
+    /// Greatest speed, per s.
+    pub velocity: DVector<f64>,
+    /// Greatest acceleration, per s².
+    pub acceleration: DVector<f64>,
+    /// Greatest jerk, per s³.
+    pub jerk: DVector<f64>,
+}
+
+impl Limits {
+    /// The first joint whose position is beyond its limits by more than rounding (1e-9).
+    pub(crate) fn first_violation(&self, q: &DVector<f64>) -> Option<usize> {
+        (0..q.len()).find(|&i| !(q[i] >= self.lower[i] - 1e-9 && q[i] <= self.upper[i] + 1e-9))
+    }
+}
+
+/// A manipulator with everything that planning needs to know of it.
+#[derive(Debug, Clone)]
+pub struct Robot {
+    /// Name in the URDF.
+    pub name: String,
+    /// Kinematics from base frame to tool frame.
+    pub chain: Chain,
+    /// What each joint may do.
+    pub limits: Limits,
+    /// The configuration to stay close to where the robot's present state is unknown, of shape (dof).
+    pub preferred: DVector<f64>,
+    /// Name of the base frame, in which tool poses are given.
+    pub base_frame: String,
+    /// Name of the tool frame.
+    pub tool_frame: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    base_frame: String,
+    tool_frame: String,
+    joints: BTreeMap<String, JointSettings>,
+}
+
+/// For prismatic joints the same figures in metres, under the keys with `_m`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JointSettings {
+    #[serde(alias = "acceleration_m_s2")]
+    acceleration_rad_s2: f64,
+    #[serde(alias = "jerk_m_s3")]
+    jerk_rad_s3: f64,
+    #[serde(default, alias = "velocity_m_s")]
+    velocity_rad_s: Option<f64>,
+    #[serde(default, alias = "lower_m")]
+    lower_rad: Option<f64>,
+    #[serde(default, alias = "upper_m")]
+    upper_rad: Option<f64>,
+    #[serde(default, alias = "preferred_m")]
+    preferred_rad: Option<f64>,
+}
+
+impl Robot {
+    /// A robot whose description is part of this crate: `"ur5e"`.
+    ///
+    /// # Errors
+    /// [`ManipulatorError::UnknownRobot`] for any other name.
+    pub fn shipped(name: &str) -> Result<Self> {
+        let (urdf, settings) = shipped_description(name)?;
+        Self::from_urdf(urdf, settings)
+    }
+
+    /// A robot whose description is part of this crate, with other settings than the shipped ones.
+    ///
+    /// # Errors
+    /// As [`Robot::shipped`] and [`Robot::from_urdf`].
+    pub fn shipped_with(name: &str, settings_yaml: &str) -> Result<Self> {
+        Self::from_urdf(shipped_description(name)?.0, settings_yaml)
+    }
+
+    /// A robot from a URDF and the YAML settings beside it.
+    ///
+    /// The settings have `base_frame`, `tool_frame` and, under `joints`, for every moving joint between them
+    /// `acceleration_rad_s2`, `jerk_rad_s3` and optionally `lower_rad`, `upper_rad`, `velocity_rad_s` (which only tighten the
+    /// URDF's) and `preferred_rad` (else the middle of the range).
+    ///
+    /// # Errors
+    /// A [`ManipulatorError`] that names the frame, joint or key that is wrong.
+    pub fn from_urdf(urdf: &str, settings_yaml: &str) -> Result<Self> {
+        let settings: Settings = serde_yaml::from_str(settings_yaml)
+            .map_err(|error| ManipulatorError::Settings { reason: urdf::one_line(&error.to_string()) })?;
+        let description = urdf::parse(urdf)?;
+        let (chain, stated) = urdf::chain(&description, &settings.base_frame, &settings.tool_frame)?;
+        if let Some(joint) = settings.joints.keys().find(|name| !chain.joint_names().contains(name)) {
+            return Err(ManipulatorError::UnknownJoint { joint: joint.clone() });
+        }
+        let mut joints = Vec::with_capacity(chain.dof());
+        for (name, stated) in chain.joint_names().iter().zip(&stated) {
+            let own = settings.joints.get(name);
+            let own = own.ok_or_else(|| ManipulatorError::MissingSettings { joint: name.clone() })?;
+            joints.push(combine(name, stated, own)?);
+        }
+        let column = |k: usize| DVector::from_iterator(joints.len(), joints.iter().map(|j| j[k]));
+        let limits = Limits {
+            lower: column(0),
+            upper: column(1),
+            velocity: column(2),
+            acceleration: column(3),
+            jerk: column(4),
+        };
+        let preferred = column(5);
+        let Settings { base_frame, tool_frame, .. } = settings;
+        Ok(Self { name: description.name, chain, limits, preferred, base_frame, tool_frame })
+    }
+
+    pub(crate) fn check_configuration(&self, what: &'static str, q: &DVector<f64>) -> Result<()> {
+        if q.len() != self.chain.dof() {
+            return Err(ManipulatorError::WrongSize { what, expected: self.chain.dof(), given: q.len() });
+        }
+        if !q.iter().all(|x| x.is_finite()) {
+            return Err(ManipulatorError::NonFinite { what });
+        }
+        Ok(())
+    }
+}
+
+/// URDF and settings.
+fn shipped_description(name: &str) -> Result<(&'static str, &'static str)> {
+    let (known, urdf, settings) = UR5E;
+    if name == known {
+        return Ok((urdf, settings));
+    }
+    Err(ManipulatorError::UnknownRobot { name: name.into(), known: known.into() })
+}
+
+/// Lower, upper, velocity, acceleration, jerk, preferred.
+fn combine(name: &str, stated: &UrdfLimits, own: &JointSettings) -> Result<[f64; 6]> {
+    let invalid = |what, value, must_be| ManipulatorError::InvalidJoint { joint: name.into(), what, value, must_be };
+    let figures = [own.velocity_rad_s, own.lower_rad, own.upper_rad, own.preferred_rad];
+    if let Some(value) = figures.into_iter().flatten().find(|v| !v.is_finite()) {
+        return Err(invalid("a figure of its settings", value, "finite"));
+    }
+    let positive = [
+        ("its acceleration limit", own.acceleration_rad_s2),
+        ("its jerk limit", own.jerk_rad_s3),
+        ("its velocity limit", own.velocity_rad_s.unwrap_or(stated.velocity)),
+    ];
+    for (what, value) in positive {
+        if !(value.is_finite() && value > 0.0) {
+            return Err(invalid(what, value, "positive"));
+        }
+    }
+    let lower = stated.lower.max(own.lower_rad.unwrap_or(f64::NEG_INFINITY));
+    let upper = stated.upper.min(own.upper_rad.unwrap_or(f64::INFINITY));
+    if lower >= upper {
+        return Err(invalid("its range (upper - lower limit)", upper - lower, "positive"));
+    }
+    let middle = if (lower + upper).is_finite() { 0.5 * (lower + upper) } else { 0.0 };
+    let preferred = own.preferred_rad.unwrap_or(middle);
+    if !(lower..=upper).contains(&preferred) {
+        return Err(invalid("its preferred position", preferred, "within its limits"));
+    }
+    let velocity = stated.velocity.min(own.velocity_rad_s.unwrap_or(f64::INFINITY));
+    Ok([lower, upper, velocity, own.acceleration_rad_s2, own.jerk_rad_s3, preferred])
+}

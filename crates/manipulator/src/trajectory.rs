@@ -1,0 +1,69 @@
+//! Timed joint motion as it is published and executed.
+
+use nalgebra::DVector;
+use serde::Serialize;
+
+use crate::quintic::Quintic;
+
+/// The joints' state at one time; every vector in the order of the trajectory's joint names.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointPoint {
+    /// Time from the start, in s: a whole number of nanoseconds, as ROS carries it.
+    pub time_s: f64,
+    /// In rad (m for prismatic joints).
+    pub positions: Vec<f64>,
+    /// Per s.
+    pub velocities: Vec<f64>,
+    /// Per s².
+    pub accelerations: Vec<f64>,
+}
+
+/// Points in time, and between them the quintic that has their positions, velocities and accelerations: what a ROS
+/// `joint_trajectory_controller` executes. Position, velocity and acceleration are continuous by construction.
+///
+/// Write positions with all their digits: the jerk between points 10 ms apart amplifies rounding by 6e7.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointTrajectory {
+    /// Names of the joints.
+    pub joint_names: Vec<String>,
+    /// In order of time.
+    pub points: Vec<JointPoint>,
+}
+
+impl JointTrajectory {
+    /// Time of the last point, in s; 0 without points.
+    pub fn duration_s(&self) -> f64 {
+        self.points.last().map_or(0.0, |point| point.time_s)
+    }
+
+    /// Position, velocity, acceleration and jerk at time `t` in s, each of shape (dof). Before the first and after the last point
+    /// the joints rest there. Without points the vectors are empty.
+    pub fn at(&self, t: f64) -> [DVector<f64>; 4] {
+        let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else {
+            return [(); 4].map(|()| DVector::zeros(0));
+        };
+        let resting =
+            if t < first.time_s { Some(first) } else { (t > last.time_s || self.points.len() == 1).then_some(last) };
+        if let Some(point) = resting {
+            let zeros = DVector::zeros(point.positions.len());
+            return [DVector::from_column_slice(&point.positions), zeros.clone(), zeros.clone(), zeros];
+        }
+        let interval = self.points.partition_point(|p| p.time_s <= t).clamp(1, self.points.len() - 1) - 1;
+        let local = t - self.points[interval].time_s;
+        let mut state = [(); 4].map(|()| DVector::zeros(first.positions.len()));
+        for (joint, quintic) in self.quintics(interval).enumerate() {
+            for (value, d) in state.iter_mut().zip(quintic.at(local)) {
+                value[joint] = d;
+            }
+        }
+        state
+    }
+
+    /// What is executed between point `interval` and the next, one polynomial a joint.
+    pub(crate) fn quintics(&self, interval: usize) -> impl Iterator<Item = Quintic> + '_ {
+        let (from, to) = (&self.points[interval], &self.points[interval + 1]);
+        let h = to.time_s - from.time_s;
+        let state = |p: &JointPoint, j: usize| [p.positions[j], p.velocities[j], p.accelerations[j]];
+        (0..from.positions.len()).map(move |j| Quintic::hermite(h, state(from, j), state(to, j)))
+    }
+}

@@ -1,0 +1,125 @@
+//! From a URDF to a chain and the limits that the URDF states.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use se3_geom::{Pose, Twist};
+use urdf_rs::{Joint, JointType};
+
+use crate::chain::Chain;
+use crate::error::{ManipulatorError, Result};
+
+/// Position and velocity limits of one joint as the URDF has them.
+pub(crate) struct UrdfLimits {
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+    pub(crate) velocity: f64,
+}
+
+pub(crate) fn parse(urdf: &str) -> Result<urdf_rs::Robot> {
+    urdf_rs::read_from_string(urdf).map_err(|error| ManipulatorError::Urdf { reason: one_line(&error.to_string()) })
+}
+
+pub(crate) fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The chain that leads from link `base` to link `tool`, with the limits of its moving joints.
+pub(crate) fn chain(robot: &urdf_rs::Robot, base: &str, tool: &str) -> Result<(Chain, Vec<UrdfLimits>)> {
+    for frame in [base, tool] {
+        if !robot.links.iter().any(|link| link.name == frame) {
+            return Err(ManipulatorError::MissingFrame { frame: frame.into() });
+        }
+    }
+    let joints = joints_between(robot, base, tool)?;
+    let mut base_from_link = Pose::identity();
+    let mut axes_in_base = Vec::new();
+    let mut limits = Vec::new();
+    for joint in joints {
+        base_from_link *= origin(joint)?;
+        if joint.joint_type == JointType::Fixed {
+            continue;
+        }
+        axes_in_base.push((joint.name.clone(), base_from_link, unit_screw(joint)?));
+        limits.push(stated_limits(joint)?);
+    }
+    if axes_in_base.is_empty() {
+        return Err(ManipulatorError::NoChain { base: base.into(), tool: tool.into() });
+    }
+    let tool_from_base = base_from_link.inverse();
+    let screws = axes_in_base
+        .into_iter()
+        .map(|(name, base_from_joint, screw)| {
+            let tool_from_joint = tool_from_base * base_from_joint;
+            let angular = tool_from_joint.rotation * screw.angular;
+            let linear = tool_from_joint.rotation * screw.linear + tool_from_joint.translation.vector.cross(&angular);
+            (name, Twist::new(linear, angular))
+        })
+        .collect();
+    Ok((Chain::new(screws, base_from_link), limits))
+}
+
+fn joints_between<'a>(robot: &'a urdf_rs::Robot, base: &str, tool: &str) -> Result<Vec<&'a Joint>> {
+    let parent_joint: BTreeMap<&str, &Joint> = robot.joints.iter().map(|j| (j.child.link.as_str(), j)).collect();
+    let mut joints = Vec::new();
+    let mut link = tool;
+    while link != base {
+        let joint = parent_joint.get(link).filter(|_| joints.len() < robot.joints.len());
+        let Some(joint) = joint else {
+            return Err(ManipulatorError::NoChain { base: base.into(), tool: tool.into() });
+        };
+        joints.push(*joint);
+        link = &joint.parent.link;
+    }
+    joints.reverse();
+    Ok(joints)
+}
+
+/// `parent_from_joint`; URDF's rpy are fixed-axis angles, R = Rz(y)·Ry(p)·Rx(r).
+fn origin(joint: &Joint) -> Result<Pose> {
+    let (xyz, rpy) = (joint.origin.xyz.0, joint.origin.rpy.0);
+    if let Some(&value) = xyz.iter().chain(&rpy).find(|v| !v.is_finite()) {
+        return Err(invalid(joint, "a coordinate of its origin", value, "finite"));
+    }
+    let rotation = UnitQuaternion::from_euler_angles(rpy[0], rpy[1], rpy[2]);
+    Ok(Pose::from_parts(Translation3::new(xyz[0], xyz[1], xyz[2]), rotation))
+}
+
+fn unit_screw(joint: &Joint) -> Result<Twist> {
+    if let Some(mimic) = &joint.mimic {
+        let kind = format!("coupled to joint {:?} by mimic", mimic.joint);
+        return Err(ManipulatorError::UnsupportedJoint { joint: joint.name.clone(), kind });
+    }
+    let axis = Vector3::from(joint.axis.xyz.0);
+    let length = axis.norm();
+    if !(length.is_finite() && length > 1e-9) {
+        return Err(invalid(joint, "the length of its axis", length, "positive"));
+    }
+    match joint.joint_type {
+        JointType::Revolute | JointType::Continuous => Ok(Twist::new(Vector3::zeros(), axis / length)),
+        JointType::Prismatic => Ok(Twist::new(axis / length, Vector3::zeros())),
+        ref other => Err(ManipulatorError::UnsupportedJoint {
+            joint: joint.name.clone(),
+            kind: format!("{other:?}").to_lowercase(),
+        }),
+    }
+}
+
+fn stated_limits(joint: &Joint) -> Result<UrdfLimits> {
+    let limit = &joint.limit;
+    if !(limit.velocity.is_finite() && limit.velocity > 0.0) {
+        return Err(invalid(joint, "its velocity limit", limit.velocity, "stated and positive"));
+    }
+    if joint.joint_type == JointType::Continuous {
+        return Ok(UrdfLimits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: limit.velocity });
+    }
+    let range = limit.upper - limit.lower;
+    if !(range.is_finite() && range > 0.0) {
+        return Err(invalid(joint, "its range (upper - lower limit)", range, "stated and positive"));
+    }
+    Ok(UrdfLimits { lower: limit.lower, upper: limit.upper, velocity: limit.velocity })
+}
+
+fn invalid(joint: &Joint, what: &'static str, value: f64, must_be: &'static str) -> ManipulatorError {
+    ManipulatorError::InvalidJoint { joint: joint.name.clone(), what, value, must_be }
+}

@@ -1,0 +1,65 @@
+//! What a user may choose.
+
+use manipulator::{PathOptions, TimingOptions};
+use reorder::{Options, TopologyChoice, Verdict};
+use serde::Deserialize;
+
+use crate::refusal::Refusal;
+
+/// Everything that shapes a plan, with defaults for each. Unknown keys are refused by name.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// How many metres count as much as one radian when poses are compared. Changes the order, so it is reported.
+    pub metres_per_radian: f64,
+    /// Whether the curve is open or closed, or to be decided from the poses.
+    pub topology: TopologyChoice,
+    /// Input index at which an open curve starts; overrides nearness to the robot's present pose.
+    pub start: Option<usize>,
+    /// An order below this verdict is refused rather than executed.
+    pub minimum_verdict: Verdict,
+    /// Whether a trajectory may begin with a straight joint move from the present state to the first pose.
+    pub approach: bool,
+    /// Accuracy of the joint path.
+    pub path: PathOptions,
+    /// Publishing rate and scaling of limits.
+    pub timing: TimingOptions,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            metres_per_radian: 0.1,
+            topology: TopologyChoice::Auto,
+            start: None,
+            minimum_verdict: Verdict::Plausible,
+            approach: true,
+            path: PathOptions::default(),
+            timing: TimingOptions::default(),
+        }
+    }
+}
+
+impl Config {
+    /// Reads YAML text; keys that are absent keep their defaults.
+    ///
+    /// # Errors
+    /// [`Refusal::Config`] with the key and what is wrong with it.
+    pub fn from_yaml(text: &str) -> Result<Self, Refusal> {
+        let config: Self = serde_yaml::from_str(text).map_err(|e| Refusal::Config(e.to_string()))?;
+        config.check()?;
+        Ok(config)
+    }
+
+    pub(crate) fn check(&self) -> Result<(), Refusal> {
+        let length_m = self.metres_per_radian;
+        if !(length_m > 0.0 && length_m.is_finite()) {
+            return Err(Refusal::Config(format!("metres_per_radian must be a positive number, not {length_m}")));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn ordering(&self) -> Options {
+        Options { topology: self.topology, start: self.start }
+    }
+}

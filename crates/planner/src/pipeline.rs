@@ -1,0 +1,208 @@
+//! Poses to trajectory, as one pure function.
+
+use manipulator::nalgebra::DVector;
+use manipulator::{Audit, JointTrajectory, ManipulatorError, Robot, TimedPath, audit, follow, rest_to_rest, time_path};
+use reorder::{Ordering, Topology, order_poses};
+use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, SplineError, centripetal_knots};
+
+use crate::config::Config;
+use crate::refusal::Refusal;
+
+/// How much farther than the path tolerance the final trajectory may pass from an input pose: the tolerance bounds the joint
+/// path, to which the interpolation between published points adds at most as much again.
+const ACCURACY_FACTOR: f64 = 2.0;
+
+/// What is to be planned.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Request {
+    /// Frame of the poses; empty means the robot's base frame.
+    pub frame_id: String,
+    /// When the poses were taken, in ns since the epoch; passed through.
+    pub stamp_ns: i64,
+    /// `base_from_tool`, in any order.
+    pub poses: Vec<Pose>,
+    /// The joint positions the robot stands at, in the robot's joint order. The trajectory then starts there; without it, at
+    /// the first pose.
+    pub start: Option<Vec<f64>>,
+}
+
+/// An ordered, interpolated, timed and audited motion.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The recovered order with its verdict.
+    pub ordering: Ordering,
+    /// The C² curve through the distinct poses in order.
+    pub spline: PoseSpline,
+    /// What the robot executes: quintic between points, at rest at both ends.
+    pub trajectory: JointTrajectory,
+    /// When the tool is at each input pose, by input index, in s from the trajectory's start.
+    pub pose_times_s: Vec<f64>,
+    /// The limits, checked over the whole trajectory including the approach.
+    pub audit: Audit,
+    /// Greatest distance of the planned tool from an input pose at its time, in m.
+    pub pose_error_max_m: f64,
+    /// The same as an angle, in rad.
+    pub pose_error_max_rad: f64,
+    /// How long the move from the start state to the first pose takes, in s; zero without one.
+    pub approach_s: f64,
+}
+
+/// Orders, interpolates, follows, times and audits.
+///
+/// # Errors
+/// A [`Refusal`] where any of these cannot be done; nothing that breaks a limit is ever returned.
+pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, Refusal> {
+    config.check()?;
+    let base = &robot.base_frame;
+    if !request.frame_id.is_empty() && request.frame_id != *base {
+        return Err(Refusal::Frame { given: request.frame_id.clone(), base: base.clone() });
+    }
+    let start = start_state(robot, request)?;
+    let poses = &request.poses;
+    let ordering = order_from(robot, config, poses, start.as_ref())?;
+    if ordering.verdict < config.minimum_verdict {
+        return Err(not_certain_enough(ordering, config));
+    }
+    let distinct = ordering.distinct();
+    let spline = interpolate(poses, &distinct, config, ordering.topology)?;
+
+    let at_fault = |source: ManipulatorError| Refusal::Manipulator {
+        robot: robot.name.clone(),
+        input_pose: source.pose().map(|knot| distinct[knot % distinct.len()]),
+        source,
+    };
+    let path = follow(robot, &spline, start.as_ref(), &config.path).map_err(at_fault)?;
+    let timed = time_path(robot, &path, &config.timing).map_err(at_fault)?;
+    let (trajectory, approach_s) = with_approach(robot, config, start.as_ref(), &timed).map_err(at_fault)?;
+
+    let pose_times_s = times_by_input(&ordering, &distinct, &timed.knot_times_s, approach_s);
+    let (pose_error_max_m, pose_error_max_rad) = accuracy(robot, config, poses, &trajectory, &pose_times_s)?;
+    let audit = audit(robot, &trajectory);
+    if !audit.limits_ok {
+        return Err(Refusal::Limits(Box::new(audit)));
+    }
+    Ok(Plan { ordering, spline, trajectory, pose_times_s, audit, pose_error_max_m, pose_error_max_rad, approach_s })
+}
+
+fn start_state(robot: &Robot, request: &Request) -> Result<Option<DVector<f64>>, Refusal> {
+    let Some(start) = &request.start else { return Ok(None) };
+    let expected = robot.chain.dof();
+    if start.len() != expected || !start.iter().all(|q| q.is_finite()) {
+        return Err(Refusal::StartState { robot: robot.name.clone(), expected, given: start.len() });
+    }
+    Ok(Some(DVector::from_column_slice(start)))
+}
+
+/// The order; an open one begins at the end nearer to the robot's tool, where the robot's state is known.
+fn order_from(robot: &Robot, config: &Config, poses: &[Pose], start: Option<&DVector<f64>>) -> Result<Ordering, Refusal> {
+    let mut options = config.ordering();
+    let ordering = order_poses(poses, config.metres_per_radian, &options)?;
+    let (None, Some(start)) = (options.start, start) else { return Ok(ordering) };
+    let Some(metric) = Se3::with_metres_per_radian(config.metres_per_radian) else { return Ok(ordering) };
+    let tool = robot.chain.forward(start);
+    let from_tool = |index: usize| metric.distance(&tool, &poses[index]);
+    let nearest = match ordering.topology {
+        Topology::Open => {
+            let (first, last) = (ordering.order[0], ordering.order[ordering.order.len() - 1]);
+            if from_tool(last) < from_tool(first) { last } else { first }
+        }
+        Topology::Closed => {
+            ordering.order.iter().copied().min_by(|&a, &b| from_tool(a).total_cmp(&from_tool(b))).unwrap_or(0)
+        }
+    };
+    options.start = Some(nearest);
+    Ok(order_poses(poses, config.metres_per_radian, &options)?)
+}
+
+fn not_certain_enough(ordering: Ordering, config: &Config) -> Refusal {
+    const SHOWN: usize = 3;
+    let mut doubts: Vec<_> =
+        ordering.doubts.iter().take(SHOWN).map(|d| format!("poses {} and {}: {}", d.at[0], d.at[1], d.why)).collect();
+    if ordering.doubts.len() > SHOWN {
+        doubts.push(format!("and {} more", ordering.doubts.len() - SHOWN));
+    }
+    Refusal::Verdict {
+        verdict: ordering.verdict,
+        minimum: config.minimum_verdict,
+        doubts: doubts.join("; "),
+        ordering: Box::new(ordering),
+    }
+}
+
+fn interpolate(poses: &[Pose], distinct: &[usize], config: &Config, topology: Topology) -> Result<PoseSpline, Refusal> {
+    let ordered: Vec<Pose> = distinct.iter().map(|&i| poses[i]).collect();
+    let metric = Se3::with_metres_per_radian(config.metres_per_radian).unwrap_or_default();
+    let (ends, knots) = match topology {
+        Topology::Open => (Ends::Natural, centripetal_knots(&metric, &ordered)),
+        Topology::Closed => {
+            let mut round = ordered.clone();
+            round.extend(ordered.first());
+            (Ends::Periodic, centripetal_knots(&metric, &round))
+        }
+    };
+    PoseSpline::through(&ordered, &knots, ends).map_err(|source| {
+        let near = match source {
+            SplineError::HalfTurn { from, to } | SplineError::Winding { from, to, .. } => vec![from, to],
+            SplineError::KnotsNotIncreasing { index, .. } => vec![index - 1, index],
+            SplineError::NonFinitePose { index } => vec![index],
+            _ => Vec::new(),
+        };
+        Refusal::Spline { source, near: near.into_iter().map(|k| distinct[k % distinct.len()]).collect() }
+    })
+}
+
+/// The path's trajectory, led up to by a straight joint move from the start state where that is elsewhere.
+fn with_approach(
+    robot: &Robot,
+    config: &Config,
+    start: Option<&DVector<f64>>,
+    timed: &TimedPath,
+) -> Result<(JointTrajectory, f64), ManipulatorError> {
+    let (Some(start), true) = (start, config.approach) else { return Ok((timed.trajectory.clone(), 0.0)) };
+    let first = DVector::from_column_slice(&timed.trajectory.points[0].positions);
+    let mut whole = rest_to_rest(robot, start, &first, &config.timing)?;
+    let approach_s = whole.points[whole.points.len() - 1].time_s;
+    // Both pieces are at rest where they meet, so the joint point may stand once.
+    whole.points.pop();
+    whole.points.extend(timed.trajectory.points.iter().cloned().map(|mut point| {
+        point.time_s += approach_s;
+        point
+    }));
+    Ok((whole, approach_s))
+}
+
+/// Duplicates share the time of the pose they were merged into; on a closed curve the first pose's time is its first passing.
+fn times_by_input(ordering: &Ordering, distinct: &[usize], knot_times_s: &[f64], approach_s: f64) -> Vec<f64> {
+    let mut times = vec![f64::NAN; ordering.n];
+    for (&input, &time) in distinct.iter().zip(knot_times_s) {
+        times[input] = approach_s + time;
+    }
+    for group in &ordering.duplicates {
+        let known = group.iter().map(|&i| times[i]).find(|t| t.is_finite()).unwrap_or(f64::NAN);
+        group.iter().for_each(|&i| times[i] = known);
+    }
+    times
+}
+
+fn accuracy(
+    robot: &Robot,
+    config: &Config,
+    poses: &[Pose],
+    trajectory: &JointTrajectory,
+    pose_times_s: &[f64],
+) -> Result<(f64, f64), Refusal> {
+    let (mut worst_m, mut worst_rad) = (0.0, 0.0);
+    for (input_pose, (pose, &time)) in poses.iter().zip(pose_times_s).enumerate() {
+        let tool = robot.chain.forward(&trajectory.at(time)[0]);
+        let error_m = (tool.translation.vector - pose.translation.vector).norm();
+        let error_rad = So3.distance(&tool.rotation, &pose.rotation);
+        let within = error_m <= ACCURACY_FACTOR * config.path.tolerance_m
+            && error_rad <= ACCURACY_FACTOR * config.path.tolerance_rad;
+        if !within {
+            return Err(Refusal::Accuracy { input_pose, error_m, error_rad });
+        }
+        worst_m = f64::max(worst_m, error_m);
+        worst_rad = f64::max(worst_rad, error_rad);
+    }
+    Ok((worst_m, worst_rad))
+}

@@ -1,0 +1,103 @@
+//! Why there is no trajectory.
+
+use manipulator::{Audit, ManipulatorError};
+use reorder::{OrderError, Ordering, Verdict};
+use se3_geom::{InvalidPose, SplineError};
+
+/// A named refusal. Poses are named by their 0-based index in the input, not in the recovered order.
+#[derive(Debug, thiserror::Error)]
+pub enum Refusal {
+    /// A setting is wrong.
+    #[error("configuration: {0}")]
+    Config(String),
+    /// Poses in a frame that is not the robot's base.
+    #[error("the poses are in frame '{given}', but the robot's base frame is '{base}'")]
+    Frame {
+        /// Frame of the message or file.
+        given: String,
+        /// Base frame of the robot.
+        base: String,
+    },
+    /// A number that is no pose.
+    #[error("pose {input_pose}: {reason}")]
+    InvalidPose {
+        /// Which.
+        input_pose: usize,
+        /// What is wrong with it.
+        reason: InvalidPose,
+    },
+    /// The start state does not fit the robot.
+    #[error("the start state has {given} joint positions, but {robot} has {expected} joints")]
+    StartState {
+        /// Name of the robot.
+        robot: String,
+        /// How many positions are needed.
+        expected: usize,
+        /// How many were given.
+        given: usize,
+    },
+    /// The poses admit no order at all.
+    #[error("ordering: {0}")]
+    Order(#[from] OrderError),
+    /// The order is not certain enough to be executed.
+    #[error("the order is only {verdict:?}, and {minimum:?} is required: {doubts}")]
+    Verdict {
+        /// What the order is.
+        verdict: Verdict,
+        /// What the configuration asks for.
+        minimum: Verdict,
+        /// The first doubts in words.
+        doubts: String,
+        /// The order with all its doubts.
+        ordering: Box<Ordering>,
+    },
+    /// No C² curve leads through the ordered poses.
+    #[error("interpolation: {source} (counted along the recovered order; input poses {near:?})")]
+    Spline {
+        /// What went wrong, with places along the order.
+        source: SplineError,
+        /// Input indices of the poses concerned.
+        near: Vec<usize>,
+    },
+    /// The arm cannot follow the curve, or not within its limits.
+    #[error("{robot}: {source}{}", input_pose.map(|i| format!(" (input pose {i})")).unwrap_or_default())]
+    Manipulator {
+        /// Name of the robot.
+        robot: String,
+        /// What went wrong, with places along the order.
+        source: ManipulatorError,
+        /// Input index of the pose concerned.
+        input_pose: Option<usize>,
+    },
+    /// The planned tool path misses a pose by more than the tolerance.
+    #[error("the planned path passes input pose {input_pose} at {error_m:.2e} m and {error_rad:.2e} rad, more than the tolerance")]
+    Accuracy {
+        /// Which pose.
+        input_pose: usize,
+        /// Distance of the tool's origin in m.
+        error_m: f64,
+        /// Angle between the orientations in rad.
+        error_rad: f64,
+    },
+    /// The whole trajectory, approach included, does not pass its audit; it is withheld.
+    #[error("the trajectory does not pass its audit and is withheld: {0:?}")]
+    Limits(Box<Audit>),
+}
+
+impl Refusal {
+    /// Whether the input is at fault (exit code 2) rather than the robot's abilities or a doubt (exit code 1).
+    pub fn is_bad_input(&self) -> bool {
+        matches!(
+            self,
+            Self::Config(_) | Self::Frame { .. } | Self::InvalidPose { .. } | Self::StartState { .. } | Self::Order(_)
+        )
+    }
+
+    /// The order, where it was found before the refusal.
+    pub fn ordering(&self) -> Option<&Ordering> {
+        match self {
+            Self::Verdict { ordering, .. } => Some(ordering),
+            _ => None,
+        }
+    }
+}

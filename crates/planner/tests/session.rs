@@ -1,0 +1,161 @@
+//! Transcripts of the session: what goes in, what comes out, in which order. No clock, no thread.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use planner::manipulator::Robot;
+use planner::manipulator::nalgebra::DVector;
+use planner::se3_geom::xyzw_from_rotation;
+use planner::{Config, Input, Job, Outcome, Output, RawPose, Refusal, Report, Session};
+
+const HOME: [f64; 6] = [-1.5708, -1.5708, 1.5708, -1.5708, -1.5708, 0.0];
+
+fn session() -> Session {
+    Session::new(Robot::shipped("ur5e").unwrap(), Config::default())
+}
+
+/// Ten poses on a short line in front of the home pose, in no order.
+fn line() -> Vec<RawPose> {
+    let robot = Robot::shipped("ur5e").unwrap();
+    let tool = robot.chain.forward(&DVector::from_column_slice(&HOME));
+    let place = |i: usize| RawPose {
+        position: [tool.translation.x + 0.01 * ((i * 7) % 10) as f64, tool.translation.y, tool.translation.z],
+        quaternion_xyzw: xyzw_from_rotation(&tool.rotation),
+    };
+    (0..10).map(place).collect()
+}
+
+fn poses(raw: Vec<RawPose>, stamp_ns: i64) -> Input {
+    Input::Poses { frame_id: "base_link".into(), stamp_ns, poses: raw }
+}
+
+fn joint_state(names: &[&str], positions: &[f64]) -> Input {
+    Input::JointState { names: names.iter().map(|&n| n.into()).collect(), positions: positions.to_vec() }
+}
+
+/// The outputs by kind, with what tells them apart.
+fn kinds(outputs: &[Output]) -> Vec<String> {
+    let kind = |output: &Output| match output {
+        Output::Run(_) => "run".to_owned(),
+        Output::Publish(Outcome { request, result, .. }) => {
+            format!("publish {} {}", request.stamp_ns, if result.is_ok() { "plan" } else { "refusal" })
+        }
+        Output::Reply { success, .. } => format!("reply {success}"),
+        Output::Warn(_) => "warn".to_owned(),
+    };
+    outputs.iter().map(kind).collect()
+}
+
+fn only_job(outputs: Vec<Output>) -> Job {
+    let [Output::Run(job)] = <[Output; 1]>::try_from(outputs).unwrap() else { panic!("no job") };
+    job
+}
+
+fn only_outcome(outputs: Vec<Output>) -> Outcome {
+    let [Output::Publish(outcome)] = <[Output; 1]>::try_from(outputs).unwrap() else { panic!("nothing published") };
+    outcome
+}
+
+#[test]
+fn poses_are_planned_and_published() {
+    let mut session = session();
+    let job = only_job(session.handle(poses(line(), 7)));
+    let outcome = only_outcome(session.handle(Input::Finished(job.run())));
+    assert_eq!(outcome.request.stamp_ns, 7);
+    let plan = outcome.result.as_ref().unwrap();
+    // 7i mod 10 = k has the solution i = 3k mod 10.
+    assert_eq!(plan.ordering.order, [0, 3, 6, 9, 2, 5, 8, 1, 4, 7]);
+    let report: serde_json::Value = serde_json::from_str(&Report::of("ur5e", &outcome.result).to_json()).unwrap();
+    for key in ["n", "order", "topology", "method", "verdict", "certificate", "doubts", "plan"] {
+        assert!(!report[key].is_null(), "{key}");
+    }
+    assert!(report.get("refusal").is_none());
+    assert_eq!(session.counters().planned, 1);
+}
+
+#[test]
+fn the_newest_poses_wait_while_a_job_runs_and_older_ones_are_counted() {
+    let mut session = session();
+    let job = only_job(session.handle(poses(line(), 1)));
+    assert!(session.handle(poses(line(), 2)).is_empty());
+    assert!(session.handle(poses(line(), 3)).is_empty());
+    let outputs = session.handle(Input::Finished(job.run()));
+    assert_eq!(kinds(&outputs), ["publish 1 plan", "run"]);
+    let Some(Output::Run(next)) = outputs.into_iter().nth(1) else { panic!() };
+    assert_eq!(only_outcome(session.handle(Input::Finished(next.run()))).request.stamp_ns, 3);
+    let counters = session.counters();
+    assert_eq!((counters.received, counters.superseded, counters.planned), (3, 1, 2));
+}
+
+#[test]
+fn what_was_cleared_is_not_published() {
+    let mut session = session();
+    let job = only_job(session.handle(poses(line(), 1)));
+    assert_eq!(kinds(&session.handle(Input::Clear)), ["reply true"]);
+    assert!(session.handle(Input::Finished(job.run())).is_empty());
+    assert_eq!(session.counters().discarded, 1);
+    assert_eq!(kinds(&session.handle(Input::Replan)), ["reply false"]);
+}
+
+#[test]
+fn replan_starts_from_the_present_joint_state() {
+    let mut session = session();
+    let names: Vec<String> = session.robot().chain.joint_names().to_vec();
+    let first = only_job(session.handle(poses(line(), 1)));
+    session.handle(Input::Finished(first.run()));
+    // The driver names joints in its own order, and other joints of the machine beside them.
+    let mut named: Vec<_> = names.iter().map(String::as_str).zip(HOME).chain([("gripper", 0.3)]).collect();
+    named.reverse();
+    let (names, positions): (Vec<_>, Vec<_>) = named.into_iter().unzip();
+    assert!(session.handle(joint_state(&names, &positions)).is_empty());
+    let outputs = session.handle(Input::Replan);
+    assert_eq!(kinds(&outputs), ["run", "reply true"]);
+    let Some(Output::Run(job)) = outputs.into_iter().next() else { panic!() };
+    let outcome = only_outcome(session.handle(Input::Finished(job.run())));
+    assert_eq!(outcome.result.unwrap().trajectory.points[0].positions, HOME);
+}
+
+#[test]
+fn joint_states_that_say_nothing_are_ignored_or_named() {
+    let mut session = session();
+    assert!(session.handle(joint_state(&["gripper"], &[0.1])).is_empty());
+    assert_eq!(kinds(&session.handle(joint_state(&["elbow_joint"], &[]))), ["warn"]);
+    let names: Vec<String> = session.robot().chain.joint_names().to_vec();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let outputs = session.handle(joint_state(&names, &[0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0]));
+    let [Output::Warn(sentence)] = outputs.as_slice() else { panic!() };
+    assert_eq!(sentence, "the joint state of shoulder_lift_joint is not a finite number and is ignored");
+}
+
+/// A quaternion in another order than x, y, z, w would be another rotation; the plan would miss the poses that were sent.
+#[test]
+fn raw_poses_are_read_in_ros_order() {
+    let mut session = session();
+    let mut raw = line();
+    // A rotation whose four components differ, so that no two orders agree.
+    let tilted = planner::se3_geom::rotation_from_xyzw(raw[0].quaternion_xyzw).unwrap()
+        * planner::se3_geom::nalgebra::UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3);
+    for pose in &mut raw {
+        pose.quaternion_xyzw = [tilted.i, tilted.j, tilted.k, tilted.w];
+    }
+    let outcome = session.handle(poses(raw, 1));
+    let outcome = only_outcome(session.handle(Input::Finished(only_job(outcome).run())));
+    let plan = outcome.result.unwrap();
+    let tool = session.robot().chain.forward(&plan.trajectory.at(plan.pose_times_s[4])[0]);
+    assert!(tool.rotation.angle_to(&tilted) < 2e-3);
+}
+
+#[test]
+fn bad_poses_are_refused_by_index_and_displace_the_ones_before() {
+    let mut session = session();
+    let job = only_job(session.handle(poses(line(), 1)));
+    let mut bad = line();
+    bad[4].quaternion_xyzw = [0.0; 4];
+    let refused = only_outcome(session.handle(poses(bad, 2)));
+    let refusal = refused.result.unwrap_err();
+    assert!(matches!(refusal, Refusal::InvalidPose { input_pose: 4, .. }));
+    assert_eq!(refusal.to_string(), "pose 4: the quaternion is zero, so there is no orientation");
+    // The plan that was under way belongs to poses that are no longer wanted.
+    assert!(session.handle(Input::Finished(job.run())).is_empty());
+    let report = Report::of("ur5e", &Err(refusal)).to_json();
+    assert_eq!(report, r#"{"refusal":"pose 4: the quaternion is zero, so there is no orientation"}"#);
+    assert_eq!(kinds(&session.handle(Input::Replan)), ["reply false"]);
+}

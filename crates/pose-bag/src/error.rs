@@ -1,0 +1,275 @@
+//! What can be wrong with a file of poses.
+
+use se3_geom::InvalidPose;
+
+use crate::cdr::CdrError;
+
+/// Why a file of poses could not be read or written. Every message is one sentence that names the file and the place in it.
+///
+/// Lines are counted from 1, as editors do; messages of a topic, and poses of a message, are counted from 0, as `order` does.
+#[derive(Debug, thiserror::Error)]
+pub enum BagError {
+    /// The operating system refused.
+    #[error("{file}: {source}")]
+    Io {
+        /// The file or folder.
+        file: String,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// Neither the extension nor the first bytes tell the format.
+    #[error("{file} is not a pose file: expected .csv, .tum, .txt, .mcap or the folder of a rosbag2 bag")]
+    UnknownFormat {
+        /// The file.
+        file: String,
+    },
+    /// There is no pose in the file.
+    #[error("{file} holds no poses")]
+    Empty {
+        /// The file.
+        file: String,
+    },
+    /// A text file holds bytes that are no text.
+    #[error("{file}, line {line}: this is not UTF-8 text")]
+    NotText {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+    },
+    /// A line is so long that the file cannot be a table.
+    #[error("{file}, line {line}: the line is longer than {limit} bytes")]
+    LineTooLong {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Longest line accepted, in bytes.
+        limit: usize,
+    },
+    /// The first line of a CSV file holds numbers instead of column names.
+    #[error("{file}, line {line}: the header is missing; the first line names the columns, such as x,y,z,qx,qy,qz,qw")]
+    NoHeader {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+    },
+    /// Two columns have the same name.
+    #[error("{file}, line {line}: column {column} occurs twice")]
+    DuplicateColumn {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// The name that occurs twice.
+        column: String,
+    },
+    /// A column that is needed is not there.
+    #[error("{file} has no column {column}; its columns are {present}")]
+    MissingColumn {
+        /// The file.
+        file: String,
+        /// The name that is needed.
+        column: String,
+        /// The names that are there.
+        present: String,
+    },
+    /// A line has too few or too many fields.
+    #[error("{file}, line {line}: {found} fields instead of {expected}")]
+    FieldCount {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Fields a line has to have.
+        expected: usize,
+        /// Fields it has.
+        found: usize,
+    },
+    /// A field is not a number.
+    #[error("{file}, line {line}: {column} is not a number: {text:?}")]
+    NotANumber {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Name of the column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// A field is NaN or infinite.
+    #[error("{file}, line {line}: {column} is not finite: {value}")]
+    NotFinite {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Name of the column.
+        column: String,
+        /// The value.
+        value: f64,
+    },
+    /// A line is no pose.
+    #[error("{file}, line {line}: {reason}")]
+    InvalidPoseInLine {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Why it is none.
+        reason: InvalidPose,
+    },
+    /// A pose in a message is none.
+    #[error("{file}, topic {topic}, message {message}, pose {pose} (counted from 0): {reason}")]
+    InvalidPoseInMessage {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// Pose in the message, from 0.
+        pose: usize,
+        /// Why it is none.
+        reason: InvalidPose,
+    },
+    /// The bytes of a message do not follow its definition.
+    #[error("{file}, topic {topic}, message {message} (counted from 0): {reason}")]
+    Cdr {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// What is wrong with the bytes.
+        reason: CdrError,
+    },
+    /// A channel is encoded in something else than CDR.
+    #[error("{file}, topic {topic}: the messages are encoded as {encoding:?} instead of cdr")]
+    MessageEncoding {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Its encoding.
+        encoding: String,
+    },
+    /// A topic changes its frame of reference.
+    #[error("{file}, topic {topic}, message {message} (counted from 0): the frame is {found:?} after {expected:?}")]
+    MixedFrames {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// Frame of the messages before.
+        expected: String,
+        /// Frame of this message.
+        found: String,
+    },
+    /// The file does not begin like an MCAP file.
+    #[error("{file} is not an MCAP file: its first bytes are not the MCAP magic")]
+    NotMcap {
+        /// The file.
+        file: String,
+    },
+    /// The file ends before its end.
+    #[error("{file} is cut off: it ends in the middle of a record after {messages_read} readable messages")]
+    Truncated {
+        /// The file.
+        file: String,
+        /// Messages, of all topics, that are whole before the cut.
+        messages_read: u64,
+    },
+    /// The file is whole but its records contradict each other.
+    #[error("{file} is damaged after {messages_read} readable messages: {reason}")]
+    Corrupt {
+        /// The file.
+        file: String,
+        /// Messages, of all topics, before the damage.
+        messages_read: u64,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The folder is no bag, or its `metadata.yaml` does not say what it has to.
+    #[error("{file} is not the folder of a rosbag2 bag: {reason}")]
+    NotABag {
+        /// The folder.
+        file: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The bag is stored in a way that is not read here.
+    #[error("{file}: bags with {feature} are not supported; `ros2 bag convert` makes an uncompressed MCAP bag of it")]
+    Unsupported {
+        /// The file.
+        file: String,
+        /// What is not supported.
+        feature: String,
+    },
+    /// No topic of the bag carries poses.
+    #[error(
+        "{file} has no topic of type geometry_msgs/msg/PoseArray or geometry_msgs/msg/PoseStamped; its topics: {topics}"
+    )]
+    NoPoseTopic {
+        /// The bag.
+        file: String,
+        /// Topics and types that are there.
+        topics: String,
+    },
+    /// Several topics carry poses and none was chosen.
+    #[error("{file} has several topics with poses, name one of them: {topics}")]
+    SeveralPoseTopics {
+        /// The bag.
+        file: String,
+        /// Topics and types to choose from.
+        topics: String,
+    },
+    /// The topic asked for carries no poses, or is not there.
+    #[error("{file} has no poses on topic {topic}; its topics: {topics}")]
+    NotAPoseTopic {
+        /// The bag.
+        file: String,
+        /// The topic asked for.
+        topic: String,
+        /// Topics and types that are there.
+        topics: String,
+    },
+    /// What should be written is already there.
+    #[error("{file} already exists and is not overwritten")]
+    AlreadyExists {
+        /// The bag.
+        file: String,
+    },
+    /// A topic was declared with one type and is written with another.
+    #[error("{file}, topic {topic}: a {written} is written to a topic of {declared}")]
+    TopicType {
+        /// The bag.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Type it was declared with.
+        declared: String,
+        /// Type of the message.
+        written: String,
+    },
+    /// The MCAP writer refused.
+    #[error("{file} could not be written: {reason}")]
+    Write {
+        /// The bag.
+        file: String,
+        /// What it said.
+        reason: String,
+    },
+}
+
+impl BagError {
+    pub(crate) fn io(file: impl Into<String>) -> impl FnOnce(std::io::Error) -> Self {
+        let file = file.into();
+        move |source| Self::Io { file, source }
+    }
+}

@@ -1,0 +1,173 @@
+//! CSV: a header that names the columns, then numbers.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use se3_geom::{Pose, pose_from_xyzw, xyzw_from_rotation};
+
+use crate::BagError;
+use crate::lines::{finite, for_each_line};
+use crate::pending::write_text;
+
+/// The columns of a pose: metres, and a unit quaternion in the order x, y, z, w.
+pub const POSE_COLUMNS: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
+
+/// The path that stands for standard input.
+pub(crate) const STANDARD_INPUT: &str = "-";
+
+/// A table of named columns. Fields are checked when a column is asked for, so columns nobody asks for may hold anything.
+#[derive(Debug, Clone)]
+pub struct Table {
+    file: String,
+    columns: Vec<String>,
+    rows: Vec<(usize, String)>,
+}
+
+/// Reads a CSV file, or standard input where the path is `-`.
+///
+/// Blank lines and lines that begin with `#` are skipped.
+///
+/// # Errors
+/// Where the file cannot be read, is empty, has no header, or a line has another number of fields than the header.
+pub fn read_table(path: impl AsRef<Path>) -> Result<Table, BagError> {
+    let path = path.as_ref();
+    if path == Path::new(STANDARD_INPUT) {
+        return Table::from_reader(std::io::stdin().lock(), "standard input");
+    }
+    let file = path.display().to_string();
+    let opened = File::open(path).map_err(BagError::io(&file))?;
+    Table::from_reader(BufReader::new(opened), &file)
+}
+
+impl Table {
+    /// Reads a table; `file` names it in errors.
+    ///
+    /// # Errors
+    /// As [`read_table`].
+    pub fn from_reader(reader: impl BufRead, file: &str) -> Result<Self, BagError> {
+        let mut columns: Option<Vec<String>> = None;
+        let mut rows = Vec::new();
+        for_each_line(reader, file, |line, text| match &columns {
+            None => {
+                columns = Some(parse_header(file, line, text)?);
+                Ok(())
+            }
+            Some(columns) => {
+                let (found, expected) = (fields(text).count(), columns.len());
+                if found != expected {
+                    return Err(BagError::FieldCount { file: file.into(), line, expected, found });
+                }
+                rows.push((line, text.to_owned()));
+                Ok(())
+            }
+        })?;
+        match columns {
+            Some(columns) if !rows.is_empty() => Ok(Self { file: file.into(), columns, rows }),
+            _ => Err(BagError::Empty { file: file.into() }),
+        }
+    }
+
+    /// What the table is called in errors.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Names of the columns, in the order of the file.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Whether there is a column of that name.
+    pub fn has_column(&self, name: &str) -> bool {
+        self.columns.iter().any(|column| column == name)
+    }
+
+    /// Rows of data.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Never: a table without rows is refused.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Line of the file, from 1, on which each row stands.
+    pub fn line_numbers(&self) -> impl Iterator<Item = usize> {
+        self.rows.iter().map(|(line, _)| *line)
+    }
+
+    /// The named columns, row by row, in the order of `names`; every number is finite.
+    ///
+    /// # Errors
+    /// Where a column is missing or a field is not a finite number.
+    pub fn select(&self, names: &[&str]) -> Result<Vec<Vec<f64>>, BagError> {
+        let indices = names.iter().map(|name| self.index_of(name)).collect::<Result<Vec<_>, _>>()?;
+        let select_row = |(line, text): &(usize, String)| {
+            let row: Vec<&str> = fields(text).collect();
+            indices.iter().zip(names).map(|(&i, name)| finite(row[i], &self.file, *line, name)).collect()
+        };
+        self.rows.iter().map(select_row).collect()
+    }
+
+    /// The poses in the columns [`POSE_COLUMNS`].
+    ///
+    /// # Errors
+    /// As [`Table::select`], and where a quaternion is no rotation.
+    pub fn poses(&self) -> Result<Vec<Pose>, BagError> {
+        let pose = |(values, (line, _)): (Vec<f64>, &(usize, String))| {
+            let invalid = |reason| BagError::InvalidPoseInLine { file: self.file.clone(), line: *line, reason };
+            pose_from_row(&values).map_err(invalid)
+        };
+        self.select(&POSE_COLUMNS)?.into_iter().zip(&self.rows).map(pose).collect()
+    }
+
+    fn index_of(&self, name: &str) -> Result<usize, BagError> {
+        self.columns.iter().position(|column| column == name).ok_or_else(|| BagError::MissingColumn {
+            file: self.file.clone(),
+            column: name.into(),
+            present: self.columns.join(", "),
+        })
+    }
+}
+
+/// The pose in seven numbers in the order of [`POSE_COLUMNS`].
+pub(crate) fn pose_from_row(row: &[f64]) -> Result<Pose, se3_geom::InvalidPose> {
+    pose_from_xyzw([row[0], row[1], row[2]], [row[3], row[4], row[5], row[6]])
+}
+
+/// The seven numbers of a pose in the order of [`POSE_COLUMNS`], each as the shortest text that reads back to the same double.
+pub(crate) fn row_from_pose(pose: &Pose, separator: &str) -> String {
+    let [qx, qy, qz, qw] = xyzw_from_rotation(&pose.rotation);
+    let t = pose.translation;
+    [t.x, t.y, t.z, qx, qy, qz, qw].map(|value| value.to_string()).join(separator)
+}
+
+fn fields(text: &str) -> impl Iterator<Item = &str> {
+    text.split(',').map(|field| field.trim().trim_matches('"'))
+}
+
+fn parse_header(file: &str, line: usize, text: &str) -> Result<Vec<String>, BagError> {
+    let columns: Vec<String> = fields(text).map(str::to_owned).collect();
+    if columns.iter().all(|column| column.parse::<f64>().is_ok()) {
+        return Err(BagError::NoHeader { file: file.into(), line });
+    }
+    for (i, column) in columns.iter().enumerate() {
+        if columns[..i].contains(column) {
+            return Err(BagError::DuplicateColumn { file: file.into(), line, column: column.clone() });
+        }
+    }
+    Ok(columns)
+}
+
+/// Writes poses as CSV with the header [`POSE_COLUMNS`]; an existing file is replaced as a whole.
+///
+/// # Errors
+/// Where the file cannot be written.
+pub fn write_csv(path: impl AsRef<Path>, poses: &[Pose]) -> Result<(), BagError> {
+    write_text(path.as_ref(), |out| {
+        writeln!(out, "{}", POSE_COLUMNS.join(","))?;
+        poses.iter().try_for_each(|pose| writeln!(out, "{}", row_from_pose(pose, ",")))
+    })
+}

@@ -1,0 +1,147 @@
+//! MCAP files that are cut, damaged, or no MCAP at all.
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use pose_bag::{BagError, Compression, PoseSet, read_poses};
+use proptest::prelude::*;
+use support::small_bag;
+
+const MESSAGES: usize = 40;
+
+fn read_bytes(folder: &Path, bytes: &[u8]) -> Result<Vec<PoseSet>, BagError> {
+    let path = folder.join("hostile.mcap");
+    fs::write(&path, bytes).unwrap();
+    read_poses(&path, None)
+}
+
+fn u32_bytes_prefixed(text: &[u8]) -> Vec<u8> {
+    [&u32::try_from(text.len()).unwrap().to_le_bytes()[..], text].concat()
+}
+
+fn record(opcode: u8, claimed: u64, body: &[u8]) -> Vec<u8> {
+    [&[opcode][..], &claimed.to_le_bytes(), body].concat()
+}
+
+fn after_magic(records: &[u8]) -> Vec<u8> {
+    [mcap::MAGIC, records].concat()
+}
+
+/// An uncompressed chunk of these records.
+fn chunk(records: &[u8]) -> Vec<u8> {
+    let size = (records.len() as u64).to_le_bytes();
+    let body = [&[0; 16][..], &size, &[0; 4], &u32_bytes_prefixed(b""), &size, records].concat();
+    record(6, body.len() as u64, &body)
+}
+
+#[test]
+fn a_cut_anywhere_is_an_error_that_counts_the_messages_before_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for compression in [Compression::None, Compression::Zstd] {
+        let whole = fs::read(small_bag(folder.path(), compression, MESSAGES)).unwrap();
+        assert_eq!(read_bytes(folder.path(), &whole).unwrap()[0].poses.len(), MESSAGES);
+        let mut counts = Vec::new();
+        for len in (1..whole.len()).step_by(97).chain([whole.len() - 1]) {
+            match read_bytes(folder.path(), &whole[..len]) {
+                Err(BagError::Truncated { messages_read, .. }) => counts.push(messages_read),
+                other => panic!("{compression:?} cut at {len} of {}: {other:?}", whole.len()),
+            }
+        }
+        assert!(counts.is_sorted(), "{counts:?}");
+        assert_eq!((counts.first(), counts.last()), (Some(&0), Some(&(MESSAGES as u64))));
+        if compression == Compression::None {
+            // A record of a stamped pose is 9 + 22 + 88 bytes, so cuts 97 bytes apart part nearly every two of them.
+            assert!(counts.iter().filter(|&&n| 0 < n && n < MESSAGES as u64).count() > MESSAGES / 2, "{counts:?}");
+        }
+    }
+}
+
+#[test]
+fn a_flipped_bit_in_the_poses_does_not_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bytes = fs::read(small_bag(folder.path(), Compression::None, MESSAGES)).unwrap();
+    let number = support::pose(7).translation.x.to_le_bytes();
+    let at = bytes.windows(8).position(|window| window == number).unwrap();
+    bytes[at] ^= 1; // the last digit of a coordinate: still a pose
+    let error = read_bytes(folder.path(), &bytes).unwrap_err().to_string();
+    assert!(error.ends_with("after 40 readable messages: the checksum of a chunk does not match its bytes"), "{error}");
+}
+
+#[test]
+fn claims_that_crash_trusting_readers() {
+    let folder = tempfile::tempdir().unwrap();
+    let channel_with_endless_topic = [&[1, 0, 0, 0][..], &[0xff; 4], b"/tool"].concat();
+    let cases: [(&str, Vec<u8>, &str); 8] = [
+        (
+            "a message beyond its chunk",
+            [chunk(&record(5, 500, &[0; 30])), vec![0; 1000]].concat(),
+            "beyond the end of its chunk",
+        ),
+        ("a record of 2^64 - 1 bytes", record(5, u64::MAX, &[]), "claims 18446744073709551615 bytes"),
+        ("a message of 4 GB", record(5, 4_000_000_000, &[]), "claims 4000000000 bytes"),
+        ("a message of 200 MB", record(5, 200_000_000, &[]), "is cut off"),
+        ("an attachment too short", record(9, 4, &[0; 4]), "is cut off"),
+        ("a topic of 4 GB", record(4, 13, &channel_with_endless_topic), "a channel record is too short"),
+        ("a chunk of 2^64 - 1 bytes", record(6, u64::MAX, &[]), "is cut off"),
+        ("a message without channel", record(5, 22, &[0; 22]), "the unknown channel 0"),
+    ];
+    for (name, records, expected) in cases {
+        let error = read_bytes(folder.path(), &after_magic(&records)).unwrap_err().to_string();
+        assert!(error.contains(expected), "{name}: {error}");
+    }
+}
+
+#[test]
+fn bytes_after_the_end_are_damage() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bytes = fs::read(small_bag(folder.path(), Compression::Zstd, 3)).unwrap();
+    bytes.push(0);
+    let error = read_bytes(folder.path(), &bytes).unwrap_err();
+    assert!(matches!(error, BagError::Corrupt { messages_read: 3, .. }), "{error}");
+}
+
+#[test]
+fn chunks_by_lz4_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = small_bag(folder.path(), Compression::None, MESSAGES);
+    let path = folder.path().join("lz4.mcap");
+    let options = mcap::WriteOptions::new().profile("ros2").compression(Some(mcap::Compression::Lz4));
+    let mut writer = options.create(fs::File::create(&path).unwrap()).unwrap();
+    let bytes = fs::read(whole).unwrap();
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        writer.write(&message.unwrap()).unwrap();
+    }
+    writer.finish().unwrap();
+    support::assert_same(&read_poses(&path, None).unwrap()[0].poses, &support::poses(MESSAGES));
+    let cut = fs::read(&path).unwrap();
+    let error = read_bytes(folder.path(), &cut[..cut.len() / 2]).unwrap_err();
+    assert!(matches!(error, BagError::Truncated { .. }), "{error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(4), ..ProptestConfig::with_cases(200) })]
+
+    #[test]
+    fn random_records_do_not_panic(records in prop::collection::vec((0_u8..17, prop::collection::vec(any::<u8>(), 0..80)), 0..6)) {
+        let folder = tempfile::tempdir().unwrap();
+        let framed = records.iter().flat_map(|(opcode, body)| record(*opcode, body.len() as u64, body)).collect::<Vec<_>>();
+        prop_assert!(read_bytes(folder.path(), &after_magic(&framed)).is_err());
+        prop_assert!(read_bytes(folder.path(), &framed).is_err());
+        prop_assert!(read_bytes(folder.path(), &after_magic(&chunk(&framed))).is_err());
+    }
+
+    #[test]
+    fn damaged_bags_do_not_panic(zstd: bool, damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..5)) {
+        let folder = tempfile::tempdir().unwrap();
+        let compression = if zstd { Compression::Zstd } else { Compression::None };
+        let mut bytes = fs::read(small_bag(folder.path(), compression, 4)).unwrap();
+        for (at, byte) in damage {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        let _ = read_bytes(folder.path(), &bytes);
+    }
+}

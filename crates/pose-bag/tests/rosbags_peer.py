@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+"""The independent peer of crate pose-bag: PyPI rosbags 0.11.9 (and mcap-ros2-support, as --reader mcap).
+
+  rosbags_peer.py read BAG [--reader rosbags|mcap]    what is in the bag, as JSON (floats as Python repr)
+  rosbags_peer.py write BAG [--compression none|zstd] the bag that tests/rosbags_fixture.rs expects
+
+`write` made tests/data/rosbags_none and tests/data/rosbags_zstd. `read` decodes with the message definitions inside the bag.
+"""
+
+import argparse
+import dataclasses
+import json
+from pathlib import Path
+
+import numpy as np
+
+START_NS = 1_700_000_000_000_000_000
+
+
+def plain(value):
+    """A message as nested dictionaries, whichever library made its class."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if dataclasses.is_dataclass(value):
+        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value) if f.name != "__msgtype__"}
+    if hasattr(value, "__slots__"):
+        return {name: plain(getattr(value, name)) for name in value.__slots__}
+    return value
+
+
+def rosbags_messages(bag):
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
+    jazzy = get_typestore(Stores.ROS2_JAZZY)
+    with AnyReader([bag]) as reader:
+        for connection in reader.connections:
+            # A bare MCAP file has no metadata.yaml, which alone carries the hashes.
+            assert connection.digest in ("", jazzy.hash_rihs01(connection.msgtype)), connection.digest
+        for connection, time_ns, data in reader.messages():
+            yield connection.topic, connection.msgtype, time_ns, plain(reader.deserialize(data, connection.msgtype))
+
+
+def mcap_messages(bag):
+    from mcap_ros2.reader import read_ros2_messages
+
+    for path in sorted(bag.glob("*.mcap")) if bag.is_dir() else [bag]:
+        for message in read_ros2_messages(path):
+            yield message.channel.topic, message.schema.name, message.log_time_ns, plain(message.ros_msg)
+
+
+def elements(message):
+    """The poses, points or texts that a message consists of."""
+    for field in ("poses", "points"):
+        if field in message:
+            return message[field]
+    return [message]
+
+
+def read(bag, reader):
+    topics = {}
+    for topic, message_type, time_ns, message in (rosbags_messages if reader == "rosbags" else mcap_messages)(bag):
+        entry = topics.setdefault(topic, {"type": message_type, "count": 0, "elements": 0, "start_ns": time_ns})
+        found = elements(message)
+        entry["count"] += 1
+        entry["elements"] += len(found)
+        entry["end_ns"] = time_ns
+        if "header" in message:
+            entry["frame_id"] = message["header"]["frame_id"]
+        if found:
+            entry.setdefault("first", found[0])
+            entry["last"] = found[-1]
+    print(json.dumps({"topics": topics}, indent=1, sort_keys=True))
+
+
+def write(bag, compression):
+    from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
+    from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    kind = store.types
+    forever = QosTime(9223372036, 854775807)
+    qos = Qos(
+        QosHistory.KEEP_LAST, 10, QosReliability.RELIABLE, QosDurability.VOLATILE, forever, forever,
+        QosLiveliness.AUTOMATIC, forever, False,
+    )
+
+    def header(time_ns, frame):
+        stamp = kind["builtin_interfaces/msg/Time"](sec=time_ns // 10**9, nanosec=time_ns % 10**9)
+        return kind["std_msgs/msg/Header"](stamp=stamp, frame_id=frame)
+
+    def pose(k):
+        # 2² + 4² + 5² + 6² = 9²: a unit quaternion whose components all differ, turned round by k.
+        q = [(2 / 9, 4 / 9, 5 / 9, 6 / 9)[(i + k) % 4] for i in range(4)]
+        return kind["geometry_msgs/msg/Pose"](
+            position=kind["geometry_msgs/msg/Point"](x=0.1 * k, y=-0.2 * k, z=1 / (1 + k)),
+            orientation=kind["geometry_msgs/msg/Quaternion"](*q),
+        )
+
+    writer = Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP)
+    if compression == "zstd":
+        writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    with writer:
+        def topic(name, message_type):
+            return writer.add_connection(name, message_type, typestore=store, offered_qos_profiles=[qos])
+
+        arrays = topic("/scan", "geometry_msgs/msg/PoseArray")
+        tool = topic("/tool", "geometry_msgs/msg/PoseStamped")
+        note = topic("/note", "std_msgs/msg/String")
+        # The second array is big endian.
+        for k, frame, count, little in [(0, "base", 7, True), (1, "a frame of odd length", 3, False)]:
+            poses = [pose(100 * k + i) for i in range(count)]
+            message = kind[arrays.msgtype](header=header(START_NS + k, frame), poses=poses)
+            writer.write(arrays, START_NS + k, store.serialize_cdr(message, arrays.msgtype, little_endian=little))
+        for k in range(5):
+            time_ns = START_NS + 20_000_000 * k + 7
+            message = kind[tool.msgtype](header=header(time_ns, "base"), pose=pose(k))
+            writer.write(tool, time_ns, store.serialize_cdr(message, tool.msgtype))
+        text = kind["std_msgs/msg/String"](data="not a pose")
+        writer.write(note, START_NS + 10**9, store.serialize_cdr(text, note.msgtype))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    for name in ("read", "write"):
+        command = commands.add_parser(name)
+        command.add_argument("bag", type=Path)
+    commands.choices["read"].add_argument("--reader", choices=["rosbags", "mcap"], default="rosbags")
+    commands.choices["write"].add_argument("--compression", choices=["none", "zstd"], default="none")
+    arguments = parser.parse_args()
+    if arguments.command == "read":
+        read(arguments.bag, arguments.reader)
+    else:
+        write(arguments.bag, arguments.compression)
+
+
+if __name__ == "__main__":
+    main()

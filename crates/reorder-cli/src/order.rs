@@ -1,0 +1,110 @@
+//! `reorder order`.
+
+use clap::{Args, ValueEnum};
+use planner::reorder::{Options, OrderError, Ordering, TopologyChoice, order, order_poses};
+use planner::se3_geom::{R2, R3, So3, xyzw_from_rotation};
+
+use crate::failure::Failure;
+use crate::output::print;
+use crate::source::{Manifold, Points, Source};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    /// The space the points live in; told from the columns where it is not given
+    #[arg(long)]
+    manifold: Option<Manifold>,
+    /// How many metres count as much as one radian when poses are compared
+    #[arg(long, value_name = "L", default_value_t = 0.1)]
+    metres_per_radian: f64,
+    /// How to order
+    #[arg(long, default_value = "auto")]
+    method: Method,
+    /// Open curve, closed curve, or told from the points
+    #[arg(long, default_value = "auto")]
+    topology: Topology,
+    /// Row (counted from 0) at which the order starts
+    #[arg(long, value_name = "INDEX")]
+    start: Option<usize>,
+    /// What to print
+    #[arg(long, default_value = "json")]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Method {
+    /// The best method there is
+    Auto,
+    /// Minimum spanning tree
+    Mst,
+}
+
+/// As [`TopologyChoice`].
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Topology {
+    Auto,
+    Open,
+    Closed,
+}
+
+impl From<Topology> for TopologyChoice {
+    fn from(topology: Topology) -> Self {
+        match topology {
+            Topology::Auto => Self::Auto,
+            Topology::Open => Self::Open,
+            Topology::Closed => Self::Closed,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    /// One object with the order, the verdict and its doubts
+    Json,
+    /// One row index a line, in recovered order
+    Indices,
+    /// The input's points in recovered order
+    Csv,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let points = arguments.source.points(arguments.manifold)?;
+    let ordering = order_points(arguments, &points)
+        .map_err(|error| Failure::BadInput(format!("{}: {error}", arguments.source.input.display())))?;
+    print(&match arguments.format {
+        Format::Json => serde_json::to_string(&ordering).map_err(Failure::bad_input)? + "\n",
+        Format::Indices => ordering.order.iter().map(|row| format!("{row}\n")).collect(),
+        Format::Csv => csv(&points, &ordering.order),
+    })
+}
+
+fn order_points(arguments: &Arguments, points: &Points) -> Result<Ordering, OrderError> {
+    // Both mean the same as long as there is one method.
+    let (Method::Auto | Method::Mst) = arguments.method;
+    let options = Options { topology: arguments.topology.into(), start: arguments.start };
+    match points {
+        Points::Plane(points) => order(&R2::default(), points, &options),
+        Points::Space(points) => order(&R3::default(), points, &options),
+        Points::Rotations(points) => order(&So3, points, &options),
+        Points::Poses(points) => order_poses(points, arguments.metres_per_radian, &options),
+    }
+}
+
+fn csv(points: &Points, order: &[usize]) -> String {
+    let (header, row): (&str, Box<dyn Fn(usize) -> Vec<f64> + '_>) = match points {
+        Points::Plane(p) => ("x,y", Box::new(|i| p[i].as_slice().to_vec())),
+        Points::Space(p) => ("x,y,z", Box::new(|i| p[i].as_slice().to_vec())),
+        Points::Rotations(r) => ("qx,qy,qz,qw", Box::new(|i| xyzw_from_rotation(&r[i]).to_vec())),
+        Points::Poses(p) => (
+            "x,y,z,qx,qy,qz,qw",
+            Box::new(|i| [p[i].translation.vector.as_slice(), &xyzw_from_rotation(&p[i].rotation)].concat()),
+        ),
+    };
+    let mut text = format!("{header}\n");
+    for &i in order {
+        let fields: Vec<String> = row(i).iter().map(f64::to_string).collect();
+        text += &(fields.join(",") + "\n");
+    }
+    text
+}

@@ -1,0 +1,83 @@
+//! Where results go: standard output, or files that appear whole or not at all.
+
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+use planner::Plan;
+use planner::manipulator::JointTrajectory;
+use planner::pose_bag::BagWriter;
+use planner::pose_bag::msg;
+
+use crate::failure::Failure;
+
+/// Prints to standard output. A reader that stops early, such as `head`, is no error.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::BadInput(format!("standard output: {error}"))),
+        _ => Ok(()),
+    }
+}
+
+/// The trajectory as CSV: `t`, then positions, velocities and accelerations of every joint, SI units.
+pub(crate) fn trajectory_csv(trajectory: &JointTrajectory) -> String {
+    let mut header = vec!["t".to_owned()];
+    for kind in ["position", "velocity", "acceleration"] {
+        header.extend(trajectory.joint_names.iter().map(|joint| format!("{joint}.{kind}")));
+    }
+    let mut text = header.join(",") + "\n";
+    for point in &trajectory.points {
+        let row = [point.time_s].into_iter().chain(point.positions.iter().copied());
+        let row = row.chain(point.velocities.iter().copied()).chain(point.accelerations.iter().copied());
+        text += &(row.map(|x| x.to_string()).collect::<Vec<_>>().join(",") + "\n");
+    }
+    text
+}
+
+/// Writes text beside its destination and moves it there when it is complete.
+pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let write = || -> std::io::Result<()> {
+        let mut pending = tempfile::NamedTempFile::new_in(folder)?;
+        pending.write_all(text.as_bytes())?;
+        pending.persist(path)?;
+        Ok(())
+    };
+    write().map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))
+}
+
+/// Writes a bag with the joint trajectory and the ordered poses, on the topics of the ROS node.
+pub(crate) fn write_bag(path: &Path, plan: &Plan, frame_id: &str, poses: &[planner::se3_geom::Pose]) -> Result<(), Failure> {
+    let header = || msg::Header { stamp: msg::Time::default(), frame_id: frame_id.to_owned() };
+    let ordered: Vec<msg::Pose> = plan.ordering.order.iter().map(|&i| (&poses[i]).into()).collect();
+    let path_poses = ordered.iter().map(|&pose| msg::PoseStamped { header: header(), pose }).collect();
+    let write = || {
+        let mut bag = BagWriter::create(path)?;
+        bag.write("/joint_trajectory", 0, &trajectory_message(&plan.trajectory))?;
+        bag.write("/reorder/ordered_poses", 0, &msg::PoseArray { header: header(), poses: ordered.clone() })?;
+        bag.write("/reorder/path", 0, &msg::Path { header: header(), poses: path_poses })?;
+        bag.finish()
+    };
+    write().map_err(Failure::bad_input)
+}
+
+fn trajectory_message(trajectory: &JointTrajectory) -> msg::JointTrajectory {
+    let point = |p: &planner::manipulator::JointPoint| msg::JointTrajectoryPoint {
+        positions: p.positions.clone(),
+        velocities: p.velocities.clone(),
+        accelerations: p.accelerations.clone(),
+        effort: Vec::new(),
+        time_from_start: duration_message(p.time_s),
+    };
+    msg::JointTrajectory {
+        header: msg::Header::default(),
+        joint_names: trajectory.joint_names.clone(),
+        points: trajectory.points.iter().map(point).collect(),
+    }
+}
+
+/// Rounded to the nanosecond; trajectories start at 0 and last minutes, so the seconds fit.
+fn duration_message(time_s: f64) -> msg::Duration {
+    let nanos = (time_s * 1e9).round() as u64;
+    msg::Duration { sec: (nanos / 1_000_000_000) as i32, nanosec: (nanos % 1_000_000_000) as u32 }
+}

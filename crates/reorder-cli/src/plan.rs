@@ -1,0 +1,126 @@
+//! `reorder plan`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use planner::manipulator::Robot;
+use planner::reorder::Verdict;
+use planner::{Config, Refusal, Request, plan};
+
+use crate::failure::Failure;
+use crate::order::Topology;
+use crate::output::{print, trajectory_csv, write_bag, write_whole};
+use crate::source::Source;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    /// A shipped robot by name (ur5e), or a URDF file, which needs --limits
+    #[arg(long, value_name = "NAME|FILE.urdf")]
+    robot: String,
+    /// Frames and limits of every joint, in the form of config/robots/ur5e.yaml
+    #[arg(long, value_name = "FILE.yaml")]
+    limits: Option<PathBuf>,
+    /// Trajectory points a second
+    #[arg(long, value_name = "HZ")]
+    rate: Option<f64>,
+    /// Where the trajectory goes: a CSV or an MCAP file; CSV on standard output where it is not given
+    #[arg(short, long, value_name = "OUT.csv|OUT.mcap")]
+    output: Option<PathBuf>,
+    /// How many metres count as much as one radian when poses are compared
+    #[arg(long, value_name = "L")]
+    metres_per_radian: Option<f64>,
+    /// Open curve, closed curve, or told from the poses
+    #[arg(long, default_value = "auto")]
+    topology: Topology,
+    /// Pose (counted from 0) at which the trajectory starts
+    #[arg(long, value_name = "INDEX")]
+    start: Option<usize>,
+    /// Joint positions the robot stands at, in rad, separated by commas; the trajectory then starts there
+    #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
+    from: Option<Vec<f64>>,
+    /// Least certain order that is still planned
+    #[arg(long, default_value = "plausible")]
+    minimum_verdict: MinimumVerdict,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum MinimumVerdict {
+    Ambiguous,
+    Plausible,
+    Certified,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let as_bag = match arguments.output.as_deref().map(Path::extension) {
+        None => false,
+        Some(Some(extension)) if extension == "csv" => false,
+        Some(Some(extension)) if extension == "mcap" => true,
+        Some(_) => return Err(Failure::BadInput("the output must end in .csv or .mcap".into())),
+    };
+    let robot = load_robot(&arguments.robot, arguments.limits.as_deref())?;
+    let config = configure(arguments);
+    let set = arguments.source.poses()?;
+    let request =
+        Request { frame_id: set.frame_id, poses: set.poses, start: arguments.from.clone(), ..Request::default() };
+    let name = arguments.source.input.display();
+    let plan = plan(&robot, &config, &request).map_err(|refusal| {
+        let sentence = format!("{name}: {refusal}");
+        if refusal.is_bad_input() { Failure::BadInput(sentence) } else { Failure::Refused(sentence) }
+    })?;
+    match &arguments.output {
+        None => print(&trajectory_csv(&plan.trajectory)),
+        Some(path) if as_bag => write_bag(path, &plan, &robot.base_frame, &request.poses),
+        Some(path) => write_whole(path, &trajectory_csv(&plan.trajectory)),
+    }?;
+    let ratio = &plan.audit.max_ratio;
+    eprintln!(
+        "{} poses, order {:?}; {} points in {:.3} s; peak over limit: velocity {:.3}, acceleration {:.3}, jerk {:.3}",
+        request.poses.len(),
+        plan.ordering.verdict,
+        plan.trajectory.points.len(),
+        plan.trajectory.duration_s(),
+        ratio.velocity,
+        ratio.acceleration,
+        ratio.jerk
+    );
+    Ok(())
+}
+
+fn configure(arguments: &Arguments) -> Config {
+    let mut config = Config {
+        topology: arguments.topology.into(),
+        start: arguments.start,
+        minimum_verdict: match arguments.minimum_verdict {
+            MinimumVerdict::Ambiguous => Verdict::Ambiguous,
+            MinimumVerdict::Plausible => Verdict::Plausible,
+            MinimumVerdict::Certified => Verdict::Certified,
+        },
+        ..Config::default()
+    };
+    config.metres_per_radian = arguments.metres_per_radian.unwrap_or(config.metres_per_radian);
+    config.timing.rate_hz = arguments.rate.unwrap_or(config.timing.rate_hz);
+    config
+}
+
+/// A shipped robot, with its own limits or others, or a robot from files.
+fn load_robot(name: &str, limits: Option<&Path>) -> Result<Robot, Failure> {
+    let read = |path: &Path| {
+        fs::read_to_string(path).map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))
+    };
+    let in_file = |path: &Path| {
+        let path = path.display().to_string();
+        move |error| Failure::BadInput(format!("{path}: {error}"))
+    };
+    let is_file = name.ends_with(".urdf");
+    match limits {
+        None if is_file => Err(Failure::BadInput(format!("{name}: a URDF has no acceleration and jerk limits: give --limits"))),
+        None => Robot::shipped(name).map_err(Failure::bad_input),
+        Some(limits) if is_file => {
+            Robot::from_urdf(&read(Path::new(name))?, &read(limits)?).map_err(in_file(limits))
+        }
+        Some(limits) => Robot::shipped_with(name, &read(limits)?).map_err(in_file(limits)),
+    }
+}

@@ -1,0 +1,66 @@
+//! Topics and services of the node.
+
+use planner::{Outcome, Report};
+use r2r::geometry_msgs::msg::PoseArray;
+use r2r::nav_msgs::msg::Path;
+use r2r::sensor_msgs::msg::JointState;
+use r2r::std_srvs::srv::Trigger;
+use r2r::trajectory_msgs::msg::JointTrajectory;
+use r2r::{Node, Publisher, QosProfile, ServiceRequest};
+
+use futures::stream::{Stream, StreamExt};
+use planner::Input;
+
+use crate::message::{header, joint_state_input, path_message, pose_message, poses_input, trajectory_message};
+
+/// What arrives at the node.
+pub(crate) enum Arrival {
+    Message(Input),
+    Service(Input, ServiceRequest<Trigger::Service>),
+}
+
+/// Subscribes to everything and merges it into one stream.
+pub(crate) fn arrivals(node: &mut Node) -> r2r::Result<impl Stream<Item = Arrival> + Unpin + Send + use<>> {
+    let reliable = || QosProfile::default().reliable().keep_last(10);
+    let poses = node.subscribe::<PoseArray>("~/poses", reliable())?.map(|m| Arrival::Message(poses_input(m)));
+    let joint_states = node
+        .subscribe::<JointState>("joint_states", QosProfile::sensor_data())?
+        .map(|m| Arrival::Message(joint_state_input(m)));
+    let mut trigger = |name: &str| node.create_service::<Trigger::Service>(name, QosProfile::services_default());
+    let replan = trigger("~/replan")?.map(|request| Arrival::Service(Input::Replan, request));
+    let clear = trigger("~/clear")?.map(|request| Arrival::Service(Input::Clear, request));
+    Ok(futures::stream::select_all([poses.boxed(), joint_states.boxed(), replan.boxed(), clear.boxed()]))
+}
+
+/// Everything the node says.
+pub(crate) struct Publishers {
+    trajectory: Publisher<JointTrajectory>,
+    ordered_poses: Publisher<PoseArray>,
+    path: Publisher<Path>,
+    report: Publisher<r2r::std_msgs::msg::String>,
+}
+
+impl Publishers {
+    pub(crate) fn create(node: &mut Node) -> r2r::Result<Self> {
+        let latched = || QosProfile::default().reliable().transient_local().keep_last(1);
+        Ok(Self {
+            trajectory: node.create_publisher("joint_trajectory", QosProfile::default().reliable())?,
+            ordered_poses: node.create_publisher("~/ordered_poses", latched())?,
+            path: node.create_publisher("~/path", latched())?,
+            report: node.create_publisher("~/report", latched())?,
+        })
+    }
+
+    /// Publishes a plan or a refusal; the trajectory last, when everything that explains it is out.
+    pub(crate) fn publish(&self, robot: &planner::manipulator::Robot, outcome: &Outcome) -> r2r::Result<()> {
+        let report = Report::of(&robot.name, &outcome.result);
+        self.report.publish(&r2r::std_msgs::msg::String { data: report.to_json() })?;
+        let Ok(plan) = &outcome.result else { return Ok(()) };
+        let header = header(&robot.base_frame, outcome.request.stamp_ns);
+        // Equal poses once: whoever follows these must not meet the same waypoint twice. The report has every input index.
+        let poses = plan.ordering.distinct().iter().map(|&i| pose_message(&outcome.request.poses[i])).collect();
+        self.path.publish(&path_message(&plan.spline, &header))?;
+        self.ordered_poses.publish(&PoseArray { header, poses })?;
+        self.trajectory.publish(&trajectory_message(&plan.trajectory, &robot.base_frame))
+    }
+}

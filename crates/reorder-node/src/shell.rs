@@ -1,0 +1,129 @@
+//! The tasks around the session.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use futures::StreamExt;
+use planner::{Input, Output, Session};
+use r2r::std_srvs::srv::Trigger;
+use r2r::{Context, Node, ParameterValue, ServiceRequest};
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::mpsc;
+
+use crate::NodeError;
+use crate::interface::{Arrival, Publishers, arrivals};
+use crate::settings;
+
+/// Data wakes the spinning thread at once; this only bounds how long a shutdown takes.
+const SPIN_TIMEOUT: Duration = Duration::from_millis(50);
+
+/// Runs until SIGINT or SIGTERM.
+pub(crate) async fn run() -> Result<(), NodeError> {
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let mut terminate = signal(SignalKind::terminate())?;
+    let context = Context::create()?;
+    let mut node = Node::create(context.clone(), "reorder", "")?;
+    let (robot, config) = settings::from_parameters(parameters(&node))?;
+    let logger = node.logger().to_owned();
+    let publishers = Publishers::create(&mut node)?;
+    let mut arrivals = arrivals(&mut node)?;
+    r2r::log_info!(
+        &logger,
+        "ready for {} ({} joints, base frame {}); one radian counts as {} m",
+        robot.name,
+        robot.chain.dof(),
+        robot.base_frame,
+        config.metres_per_radian
+    );
+
+    let stop = Arc::new(AtomicBool::new(false));
+    let spinning = tokio::task::spawn_blocking({
+        let stop = Arc::clone(&stop);
+        move || {
+            while !stop.load(Ordering::Relaxed) {
+                node.spin_once(SPIN_TIMEOUT);
+            }
+            drop(node);
+        }
+    });
+
+    let mut shell = Shell::new(Session::new(robot, config), publishers, logger);
+    loop {
+        tokio::select! {
+            _ = interrupt.recv() => break,
+            _ = terminate.recv() => break,
+            Some(arrival) = arrivals.next() => match arrival {
+                Arrival::Message(input) => shell.handle(input, None),
+                Arrival::Service(input, request) => shell.handle(input, Some(request)),
+            },
+            Some(finished) = shell.finished.recv() => shell.handle(finished, None),
+        }
+    }
+    r2r::log_info!(&shell.logger, "shutting down");
+    stop.store(true, Ordering::Relaxed);
+    // Publishers and subscriptions go before the node, the node before the context.
+    drop((shell, arrivals));
+    spinning.await.map_err(std::io::Error::other)?;
+    drop(context);
+    Ok(())
+}
+
+/// Parameters as ROS gave them at the start.
+fn parameters(node: &Node) -> Vec<(String, ParameterValue)> {
+    let given = node.params.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    given.iter().map(|(name, parameter)| (name.clone(), parameter.value.clone())).collect()
+}
+
+struct Shell {
+    session: Session,
+    publishers: Publishers,
+    logger: String,
+    finished: mpsc::UnboundedReceiver<Input>,
+    finish: mpsc::UnboundedSender<Input>,
+}
+
+impl Shell {
+    fn new(session: Session, publishers: Publishers, logger: String) -> Self {
+        let (finish, finished) = mpsc::unbounded_channel();
+        Self { session, publishers, logger, finished, finish }
+    }
+
+    fn handle(&mut self, input: Input, mut request: Option<ServiceRequest<Trigger::Service>>) {
+        for output in self.session.handle(input) {
+            match output {
+                Output::Run(job) => {
+                    let finish = self.finish.clone();
+                    tokio::task::spawn_blocking(move || {
+                        // The receiver is gone only when the node shuts down.
+                        let _ = finish.send(Input::Finished(job.run()));
+                    });
+                }
+                Output::Publish(outcome) => {
+                    match &outcome.result {
+                        Ok(plan) => r2r::log_info!(
+                            &self.logger,
+                            "{} poses in {:?} order, {} points, {:.2} s",
+                            outcome.request.poses.len(),
+                            plan.ordering.verdict,
+                            plan.trajectory.points.len(),
+                            plan.trajectory.duration_s()
+                        ),
+                        Err(refusal) => r2r::log_warn!(&self.logger, "no trajectory: {refusal}"),
+                    }
+                    if let Err(error) = self.publishers.publish(self.session.robot(), &outcome) {
+                        r2r::log_error!(&self.logger, "publishing failed: {error}");
+                    }
+                }
+                Output::Reply { success, message } => {
+                    if let Some(request) = request.take()
+                        && let Err(error) = request.respond(Trigger::Response { success, message })
+                    {
+                        r2r::log_error!(&self.logger, "a service was not answered: {error}");
+                    }
+                }
+                Output::Warn(sentence) => r2r::log_warn!(&self.logger, "{sentence}"),
+            }
+        }
+    }
+}

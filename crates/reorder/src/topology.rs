@@ -1,0 +1,64 @@
+//! Open or closed, and where to start.
+
+use se3_geom::Manifold;
+
+use crate::curve::Curve;
+
+/// How many gaps next to an end say what is usual there.
+const LOCAL_GAPS: usize = 5;
+/// The closing gap may be this many times the longest gap: a minimum spanning tree leaves out the longest edge of a loop, which
+/// on a fairly even sample is not much longer than the next.
+const CLOSING_TO_LONGEST: f64 = 1.5;
+/// … and this many times the longest of the gaps next to both ends.
+const CLOSING_TO_LOCAL: f64 = 2.0;
+
+/// What the distance between both ends of a path says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Closing {
+    /// The ends meet: the closing gap is like the gaps around it, and the curve goes straight on across it.
+    Meets,
+    /// The ends come so near that a loop with one long gap would look the same.
+    Near,
+    /// The ends are apart.
+    Apart,
+}
+
+/// The ends meet where the closing gap is ≤ 1.5 × the longest gap and ≤ 2 × the longest of the five gaps next to either end, and
+/// the curve turns by less than 90° (by log) at both ends. They are near up to twice those bounds, whatever the angles.
+pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
+    let last = path.len() - 1;
+    if last < 2 {
+        return Closing::Apart;
+    }
+    let gaps = path.gaps();
+    let longest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
+    let local = longest(&gaps[..LOCAL_GAPS.min(gaps.len())])
+        .max(longest(&gaps[gaps.len().saturating_sub(LOCAL_GAPS)..]));
+    let allowed = (CLOSING_TO_LONGEST * longest(&gaps)).min(CLOSING_TO_LOCAL * local);
+    let closing_gap = path.distance(0, last);
+    let goes_on = |at, before, after| path.cosine(at, before, after).is_some_and(|c| c < 0.0);
+    if closing_gap > 2.0 * allowed {
+        Closing::Apart
+    } else if closing_gap <= allowed && goes_on(0, last, 1) && goes_on(last, last - 1, 0) {
+        Closing::Meets
+    } else {
+        Closing::Near
+    }
+}
+
+/// Turns a closed sequence so that it starts with `first` and goes toward the neighbour with the smaller row.
+pub(crate) fn rotate_to(rows: &mut [usize], first: usize) {
+    if let Some(k) = rows.iter().position(|&row| row == first) {
+        rows.rotate_left(k);
+        if rows[1] > rows[rows.len() - 1] {
+            rows[1..].reverse();
+        }
+    }
+}
+
+/// How far from each end the curve would show again if it went on there: twice the longest of the gaps next to that end.
+pub(crate) fn ends_beyond(gaps: &[f64]) -> [f64; 2] {
+    let longest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
+    let k = LOCAL_GAPS.min(gaps.len());
+    [&gaps[..k], &gaps[gaps.len() - k..]].map(|some| CLOSING_TO_LOCAL * longest(some))
+}

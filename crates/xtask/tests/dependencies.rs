@@ -1,0 +1,111 @@
+//! Guards the architecture: which crate may depend on which, one nalgebra, and Rust alone for the default members.
+
+use cargo_metadata::{Metadata, MetadataCommand};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+const ALL: &[&str] = &["se3-geom", "reorder", "manipulator", "pose-bag", "planner", "mujoco-sim"];
+
+/// The arrows of the architecture, tests and build scripts included. A new crate needs a row.
+const MAY_DEPEND_ON: &[(&str, &[&str])] = &[
+    ("se3-geom", &[]),
+    ("reorder", &["se3-geom"]),
+    ("manipulator", &["se3-geom"]),
+    ("pose-bag", &["se3-geom"]),
+    ("planner", &["se3-geom", "reorder", "manipulator", "pose-bag"]),
+    ("mujoco-sim", &["planner"]),
+    ("reorder-node", &["planner"]),
+    ("reorder-cli", &["planner", "pose-bag"]),
+    ("xtask", &[]),
+    ("end-to-end", ALL),
+];
+
+/// What plain `cargo build` must do without: these need ROS 2, MuJoCo or Python.
+const NOT_RUST_ALONE: &[&str] = &["r2r", "mujoco-rs", "pyo3"];
+
+fn workspace() -> Metadata {
+    MetadataCommand::new().manifest_path("../../Cargo.toml").no_deps().exec().expect("cargo metadata")
+}
+
+#[test]
+fn crates_depend_only_on_what_the_architecture_allows() {
+    let workspace = workspace();
+    let members: BTreeSet<_> = workspace.packages.iter().map(|package| package.name.as_str()).collect();
+    assert!(members.contains("planner"), "found only {members:?}");
+    let allowed: BTreeMap<_, _> = MAY_DEPEND_ON.iter().copied().collect();
+    let mut new_arrows = Vec::new();
+    for package in &workspace.packages {
+        let name = package.name.as_str();
+        let allowed = allowed.get(name).unwrap_or_else(|| panic!("{name} has no row in MAY_DEPEND_ON"));
+        for dependency in package.dependencies.iter().map(|dependency| dependency.name.as_str()) {
+            if members.contains(dependency) && !allowed.contains(&dependency) {
+                new_arrows.push(format!("{name} -> {dependency}"));
+            }
+        }
+    }
+    assert_eq!(new_arrows, Vec::<String>::new());
+}
+
+#[test]
+fn there_is_one_nalgebra() {
+    let locked = LockedPackages::read();
+    let versions: Vec<_> = locked.0.iter().filter(|package| package.name == "nalgebra").map(|p| &p.version).collect();
+    assert_eq!(versions.len(), 1, "nalgebra occurs as {versions:?}");
+}
+
+#[test]
+fn default_members_need_rust_alone() {
+    let locked = LockedPackages::read();
+    let workspace = workspace();
+    let default_members: Vec<_> = workspace.workspace_default_packages();
+    assert!(default_members.len() < workspace.packages.len() && !default_members.is_empty());
+    let needs = |name: &str| -> Vec<_> {
+        let needed = locked.needed_by(name);
+        NOT_RUST_ALONE.iter().filter(|foreign| needed.contains(**foreign)).copied().collect()
+    };
+    for member in default_members {
+        assert_eq!(needs(&member.name), Vec::<&str>::new(), "{} is a default member", member.name);
+    }
+    assert_eq!(needs("reorder-node"), ["r2r"], "the search itself finds nothing");
+}
+
+/// Cargo.lock is the resolved graph, and reading it needs no network.
+struct LockedPackages(Vec<LockedPackage>);
+
+struct LockedPackage {
+    name: String,
+    version: String,
+    dependencies: Vec<String>,
+}
+
+impl LockedPackages {
+    fn read() -> Self {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.lock");
+        let lock: toml::Table = std::fs::read_to_string(path).expect("Cargo.lock").parse().expect("TOML");
+        let text = |value: &toml::Value| value.as_str().expect("a string").to_owned();
+        let packages = lock["package"].as_array().expect("packages").iter().map(|package| LockedPackage {
+            name: text(&package["name"]),
+            version: text(&package["version"]),
+            dependencies: package.get("dependencies").map_or_else(Vec::new, |list| {
+                let names = list.as_array().expect("a list").iter().map(text);
+                names.map(|name| name.split(' ').next().expect("a name").to_owned()).collect()
+            }),
+        });
+        Self(packages.collect())
+    }
+
+    /// All packages that one brings with it; those of one name are taken together, whatever their version.
+    fn needed_by(&self, name: &str) -> BTreeSet<&str> {
+        let mut needed = BTreeSet::new();
+        let mut open = vec![name];
+        while let Some(name) = open.pop() {
+            let packages = self.0.iter().filter(|package| package.name == name);
+            for dependency in packages.flat_map(|package| &package.dependencies) {
+                if needed.insert(dependency.as_str()) {
+                    open.push(dependency);
+                }
+            }
+        }
+        needed
+    }
+}

@@ -1,0 +1,132 @@
+"""Publishes the PoseArray of a bag once, when somebody listens, and leaves when it has arrived.
+
+    publish_bag.py tests/data/lasa_sine [--joint-state home | --positions Q1 ... Q6] [--subscribers N]
+
+With a joint state, sensor_msgs/JointState goes out at 50 Hz on /joint_states, from before the poses
+until they are acknowledged. Prints one JSON line. Exit codes: 0 acknowledged, 2 bad input, 3 nobody
+listened or acknowledged in time.
+"""
+
+import argparse
+import json
+import sys
+import time
+
+import rclpy
+from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion
+from rclpy.duration import Duration
+from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from sensor_msgs.msg import JointState
+
+from leave import leave
+from recorded_poses import read_pose_array
+
+TOPIC = "/reorder/poses"
+JOINT_STATE_PERIOD_S = 0.02
+# Best effort: one of them may be lost, not all of them.
+JOINT_STATES_BEFORE_POSES = 5
+
+# The robot's own order, base to tool; the messages name them alphabetically, as the UR driver does.
+UR5E_JOINTS = [
+    "shoulder_pan_joint",
+    "shoulder_lift_joint",
+    "elbow_joint",
+    "wrist_1_joint",
+    "wrist_2_joint",
+    "wrist_3_joint",
+]
+CONFIGURATIONS_RAD = {"home": [-1.5708, -1.5708, 1.5708, -1.5708, -1.5708, 0.0]}
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("bag")
+    parser.add_argument("--subscribers", type=int, default=1, help="listeners to the poses to wait for")
+    parser.add_argument("--timeout", type=float, default=30.0, help="seconds")
+    state = parser.add_mutually_exclusive_group()
+    state.add_argument("--joint-state", choices=CONFIGURATIONS_RAD)
+    state.add_argument("--positions", type=float, nargs=6, metavar="RAD", help="base to tool")
+    return parser.parse_args()
+
+
+def main():
+    options = arguments()
+    try:
+        frame_id, rows = read_pose_array(options.bag)
+    except Exception as error:  # rosbags raises many kinds; each says what is wrong with the bag
+        print(f"{options.bag} cannot be read: {str(error).rstrip('.')}.", file=sys.stderr)
+        return 2
+    positions = options.positions or CONFIGURATIONS_RAD.get(options.joint_state)
+    rclpy.init()
+    return publish(rclpy.create_node("bag_publisher"), options, frame_id, rows, positions)
+
+
+def publish(node, options, frame_id, rows, positions):
+    deadline = time.monotonic() + options.timeout
+    poses = node.create_publisher(PoseArray, TOPIC, QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE))
+    states = JointStates(node, positions) if positions else None
+
+    while poses.get_subscription_count() < options.subscribers or (states and not states.settled()):
+        left = deadline - time.monotonic()
+        if left <= 0:
+            found = poses.get_subscription_count()
+            print(
+                f"{TOPIC} has {found} of {options.subscribers} subscribers"
+                + (f", /joint_states {states.listeners()}" if states else "")
+                + f" after {options.timeout:g} s.",
+                file=sys.stderr,
+            )
+            return 3
+        # The graph has no wait of its own here; 20 ms is the joint states' period anyway.
+        rclpy.spin_once(node, timeout_sec=min(left, JOINT_STATE_PERIOD_S))
+
+    message = PoseArray(poses=[pose(row) for row in rows])
+    message.header.frame_id = frame_id
+    message.header.stamp = node.get_clock().now().to_msg()
+    listeners = poses.get_subscription_count()
+    poses.publish(message)
+    while not poses.wait_for_all_acked(Duration(seconds=JOINT_STATE_PERIOD_S)):
+        if time.monotonic() > deadline:
+            print(f"{TOPIC} was not acknowledged within {options.timeout:g} s.", file=sys.stderr)
+            return 3
+        rclpy.spin_once(node, timeout_sec=0.0)
+    sent = states.sent if states else 0
+    line = {"topic": TOPIC, "bag": options.bag, "frame_id": frame_id, "n_poses": len(rows)}
+    print(json.dumps({**line, "subscribers": listeners, "joint_states": sent}), flush=True)
+    return 0
+
+
+class JointStates:
+    """Publishes one configuration at 50 Hz and counts what somebody could hear."""
+
+    def __init__(self, node, positions):
+        self.node = node
+        self.publisher = node.create_publisher(JointState, "/joint_states", qos_profile_sensor_data)
+        names_and_positions = sorted(zip(UR5E_JOINTS, positions))
+        self.names = [name for name, _ in names_and_positions]
+        self.positions = [position for _, position in names_and_positions]
+        self.sent = 0
+        node.create_timer(JOINT_STATE_PERIOD_S, self.publish)
+
+    def publish(self):
+        if self.listeners() == 0:
+            return
+        message = JointState(name=self.names, position=self.positions, velocity=[0.0] * len(self.names))
+        message.header.stamp = self.node.get_clock().now().to_msg()
+        self.publisher.publish(message)
+        self.sent += 1
+
+    def listeners(self):
+        return self.publisher.get_subscription_count()
+
+    def settled(self):
+        return self.sent >= JOINT_STATES_BEFORE_POSES
+
+
+def pose(row):
+    x, y, z, qx, qy, qz, qw = row
+    return Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
+
+
+if __name__ == "__main__":
+    leave(main())
