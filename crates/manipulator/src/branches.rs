@@ -92,7 +92,7 @@ fn spread_seed(robot: &Robot, index: usize) -> DVector<f64> {
 mod tests {
     use super::*;
 
-    /// Against ten times as many seeds: nearly every branch of every pose, and the nearest one always.
+    /// Against ten times as many seeds. At a singular pose the configurations are a continuum, which cannot be counted.
     #[test]
     fn the_seeds_find_nearly_all_branches() {
         let robot = Robot::shipped("ur5e").unwrap();
@@ -103,11 +103,12 @@ mod tests {
             let few = from_seeds(&robot, &target, &robot.preferred, SEEDS).unwrap();
             let many = from_seeds(&robot, &target, &robot.preferred, 10 * SEEDS).unwrap();
             assert!((&few[0] - &many[0]).amax() < 1e-5, "pose {k}");
-            found += few.len();
-            there += many.len();
+            if many.len() <= 8 {
+                found += few.len();
+                there += many.len();
+            }
         }
-        eprintln!("{found} of {there}");
-        // Eight branches are usual, two to sixteen counted with whole turns of equal distance.
-        assert!(there >= 4 * 40 && found * 100 >= there * 97, "{found} of {there}");
+        // The arm has two shoulders, elbows and wrists: eight branches where the elbow's range and reach allow all.
+        assert!(there >= 6 * 35 && found * 100 >= there * 98, "{found} of {there}");
     }
 }

@@ -59,7 +59,7 @@ impl Chain {
             let turned = tool_from_link.rotation * angular;
             let carried = tool_from_link.rotation * linear + tool_from_link.translation.vector.cross(&turned);
             jacobian.set_column(i, &Twist::new(carried, turned).to_vector());
-            tool_from_link *= Se3Group::exp(self.screws[i] * -q[i]);
+            tool_from_link *= Se3Group::exp(self.screws[i] * q[i]);
         }
         jacobian
     }

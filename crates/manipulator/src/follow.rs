@@ -128,8 +128,11 @@ fn turned_away_from_limit(robot: &Robot, q: &DVector<f64>, stopped: &Stopped) ->
     (robot.chain.is_rotary(index) && robot.limits.first_violation(&turned).is_none()).then_some(turned)
 }
 
+/// Branches come nearer to each other than this only where they meet, at a singularity.
+const SAME_BRANCH: f64 = 1e-3;
+
 pub(crate) fn is_new(known: &[DVector<f64>], q: &DVector<f64>) -> bool {
-    known.iter().all(|k| (k - q).amax() > 1e-6)
+    known.iter().all(|k| (k - q).amax() > SAME_BRANCH)
 }
 
 /// An error on the way to a pose, made more telling: if that very pose is out of reach, by how much.

@@ -148,14 +148,14 @@ mod tests {
             );
             let ranges = quintic.ranges();
             const POINTS: usize = 4000;
-            for k in 0..4 {
+            for (k, (least, greatest)) in ranges.into_iter().enumerate() {
                 let values = (0..=POINTS).map(|i| quintic.at(h * i as f64 / POINTS as f64)[k]);
                 let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(v), u.max(v)));
                 let size = hi.abs().max(lo.abs());
                 // A parabola's peak between grid points is missed by at most f″·(1/2N)²/2 ≤ 40·size/N² here.
                 let slack = 1e-12 * size + 40.0 * (hi - lo + size) / (POINTS * POINTS) as f64;
-                assert!(ranges[k].0 <= lo + 1e-12 * size && ranges[k].1 >= hi - 1e-12 * size, "{seed} {k}");
-                assert!(ranges[k].0 >= lo - slack && ranges[k].1 <= hi + slack, "{seed} {k}");
+                assert!(least <= lo + 1e-12 * size && greatest >= hi - 1e-12 * size, "{seed} {k}");
+                assert!(least >= lo - slack && greatest <= hi + slack, "{seed} {k}");
             }
         }
     }

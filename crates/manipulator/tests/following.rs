@@ -1,4 +1,5 @@
 //! Inverse kinematics of single poses and along curves.
+#![allow(clippy::unwrap_used)]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! Kinematics of the shipped UR5e against MuJoCo's model of it, and of any chain against its definition.
+#![allow(clippy::unwrap_used)]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! Trajectories: legal, continuous, at rest at both ends, on the path.
+#![allow(clippy::unwrap_used)]
 
 mod support;
 

@@ -2,7 +2,6 @@
 
 mod support;
 
-use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -34,14 +33,15 @@ fn load(path: &Path) -> Result<SimulatedArm, SimError> {
 }
 
 /// A quintic over D has its peak acceleration 10/√3·D/T²: 2 rad in 1.52 s reach the planner's 5 rad/s², at 2.5 rad/s. Left to the
-/// position error, the shoulder's inertia alone (more than 2 kg m² on 2000 N m/rad) would take 0.005 rad of it.
+/// position error, the shoulder's inertia alone (more than 2 kg m² on 2000 N m/rad) would take 0.005 rad of it; a reference velocity
+/// half a step of 2 ms old, kd/kp·q̈·h/2 = 0.2 s·5 rad/s²·1 ms = 0.001 rad.
 #[test]
 fn a_move_at_the_acceleration_limit_is_tracked() {
     let mut arm = ur5e();
     let mut goal = HOME;
     goal[0] += 2.0;
     let swing = run(&mut arm, &quintic_move(HOME, goal, 1.52));
-    assert!(swing.tracking_max_rad < 0.001, "{} rad", swing.tracking_max_rad);
+    assert!(swing.tracking_max_rad < 1e-4, "{} rad", swing.tracking_max_rad);
 
     let all_joints = run(&mut arm, &quintic_move(HOME, GOAL, 2.0));
     assert!(all_joints.tracking_max_rad < 0.002, "{} rad", all_joints.tracking_max_rad);
@@ -216,11 +216,11 @@ fn too_fast_a_move_saturates_the_servos() {
     let mut arm = ur5e();
     let mut goal = HOME;
     goal[0] += 2.0;
-    // 2 rad in 0.3 s would take 128 rad/s² and so several times the 150 N m.
+    // 2 rad in 0.3 s would take 128 rad/s², on more than 2 kg m² more than the 150 N m.
     let jerked = run(&mut arm, &quintic_move(HOME, goal, 0.3));
     assert_eq!(jerked.max_torque_ratio, 1.0);
     assert!(jerked.saturated_steps > 10);
-    assert!(jerked.tracking_max_rad > 0.1);
+    assert!(jerked.tracking_max_rad > 0.005, "{} rad", jerked.tracking_max_rad);
 }
 
 #[test]
@@ -250,14 +250,17 @@ fn models_that_cannot_be_driven_are_refused() {
     assert!(matches!(model_file("ur10"), Err(SimError::UnknownRobot { .. })));
 }
 
-/// With an explicit integrator and a long step the servos' damping overshoots: h·kd/M = 0.02·400/(a few) > 2.
+/// With an explicit integrator, a long step and no bound on the force the servos' damping overshoots: h·kd/M = 0.02·100/0.1 > 2.
 #[test]
 fn a_diverging_simulation_is_an_error() {
-    let explicit =
-        altered_model("explicit", &[(r#"integrator="implicitfast""#, r#"integrator="Euler" timestep="0.02""#)]);
-    let mut arm = load(&explicit).unwrap();
-    let mut goal = HOME;
-    goal[5] += 0.5 * PI;
-    let outcome = arm.execute(&quintic_move(HOME, goal, 2.0), &ExecuteOptions::default());
-    assert!(matches!(outcome, Err(SimError::Diverged { .. })), "{outcome:?}");
+    let explicit = [
+        (r#"integrator="implicitfast""#, r#"integrator="Euler" timestep="0.02""#),
+        (r#" forcerange="-150 150""#, ""),
+        (r#" forcerange="-28 28""#, ""),
+    ];
+    let mut arm = load(&altered_model("explicit", &explicit)).unwrap();
+    let outcome = arm.execute(&quintic_move(HOME, GOAL, 2.0), &ExecuteOptions::default());
+    let divergence = outcome.map(|execution| execution.tracking_max_rad).unwrap_err();
+    assert!(matches!(divergence, SimError::Diverged { timestep_s: 0.02, .. }), "{divergence}");
+    assert!(!Path::new("MUJOCO_LOG.TXT").exists(), "MuJoCo noticed first, and wrote its log into the working folder");
 }

@@ -49,3 +49,10 @@ pub(crate) fn merge<M: Manifold>(manifold: &M, points: &[M::Point], tree: &Tree)
     }
     Distinct { groups, tree: contracted }
 }
+
+impl Distinct {
+    /// The node of a row.
+    pub(crate) fn node_of(&self, row: usize) -> NodeIndex {
+        NodeIndex::new(self.groups.iter().position(|group| group.contains(&row)).unwrap_or(0))
+    }
+}

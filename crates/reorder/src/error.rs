@@ -58,7 +58,7 @@ pub enum OrderError {
         ends: [usize; 2],
     },
     /// The length scale of SE(3) is no length.
-    #[error("metres_per_radian is {value}, but it must be a positive finite number")]
+    #[error("metres_per_radian is {value}, but it and its square must be positive finite numbers")]
     InvalidLengthScale {
         /// What was given.
         value: f64,

@@ -123,18 +123,4 @@ impl Ordering {
         }
         self.order.iter().copied().filter(|&row| !repeated[row]).collect()
     }
-
-    /// The neighbours in the order as (smaller row, greater row), ascending, equal points merged: independent of direction
-    /// and of where a closed curve starts.
-    pub fn edges(&self) -> Vec<(usize, usize)> {
-        let rows = self.distinct();
-        let closing = match self.topology {
-            Topology::Closed => rows.last().copied().zip(rows.first().copied()),
-            Topology::Open => None,
-        };
-        let consecutive = rows.windows(2).map(|pair| (pair[0], pair[1]));
-        let mut edges: Vec<_> = consecutive.chain(closing).map(|(a, b)| (a.min(b), a.max(b))).collect();
-        edges.sort_unstable();
-        edges
-    }
 }

@@ -24,7 +24,8 @@ impl Edge {
         Self { length: manifold.distance(&points[i], &points[j]), i, j }
     }
     fn precedes(&self, other: &Self) -> bool {
-        self.length.total_cmp(&other.length).then((self.i, self.j).cmp(&(other.i, other.j))).is_lt()
+        // An overflowing distance may be NaN, which precedes nothing and is never preceded: it is joined last, and refused.
+        self.length < other.length || (self.length == other.length && (self.i, self.j) < (other.i, other.j))
     }
 }
 
@@ -46,20 +47,23 @@ pub fn minimum_spanning_tree<M: Manifold>(manifold: &M, points: &[M::Point]) -> 
     for row in 0..points.len() {
         tree.add_node(row);
     }
-    let mut outside: Vec<(usize, Edge)> =
-        (1..points.len()).map(|v| (v, Edge::between(manifold, points, 0, v))).collect();
-    while let Some(nearest) =
-        (0..outside.len()).reduce(|a, b| if outside[b].1.precedes(&outside[a].1) { b } else { a })
-    {
-        let (joined, edge) = outside.swap_remove(nearest);
+    // The shortest edge from each point outside to the tree, and which of them is the shortest of all.
+    let mut outside: Vec<(usize, Edge)> = (1..points.len()).map(|v| (v, Edge::between(manifold, points, 0, v))).collect();
+    let mut nearest = (0..outside.len()).reduce(|a, b| if outside[b].1.precedes(&outside[a].1) { b } else { a });
+    while let Some(k) = nearest.take() {
+        let (joined, edge) = outside.swap_remove(k);
         if !edge.length.is_finite() {
             return Err(OrderError::DistanceOverflow { at: [edge.i, edge.j] });
         }
         tree.add_edge(NodeIndex::new(edge.i), NodeIndex::new(edge.j), edge.length);
-        for (v, best) in &mut outside {
+        let mut shortest = None;
+        for (k, (v, best)) in outside.iter_mut().enumerate() {
             let candidate = Edge::between(manifold, points, joined, *v);
             if candidate.precedes(best) {
                 *best = candidate;
+            }
+            if shortest.is_none_or(|shortest| best.precedes(&shortest)) {
+                (shortest, nearest) = (Some(*best), Some(k));
             }
         }
     }

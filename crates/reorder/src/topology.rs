@@ -31,10 +31,8 @@ pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
         return Closing::Apart;
     }
     let gaps = path.gaps();
-    let longest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
-    let local = longest(&gaps[..LOCAL_GAPS.min(gaps.len())])
-        .max(longest(&gaps[gaps.len().saturating_sub(LOCAL_GAPS)..]));
-    let allowed = (CLOSING_TO_LONGEST * longest(&gaps)).min(CLOSING_TO_LOCAL * local);
+    let [local_first, local_last] = beyond_ends(&gaps);
+    let allowed = (CLOSING_TO_LONGEST * longest(&gaps)).min(local_first.max(local_last));
     let closing_gap = path.distance(0, last);
     let goes_on = |at, before, after| path.cosine(at, before, after).is_some_and(|c| c < 0.0);
     if closing_gap > 2.0 * allowed {
@@ -57,8 +55,11 @@ pub(crate) fn rotate_to(rows: &mut [usize], first: usize) {
 }
 
 /// How far from each end the curve would show again if it went on there: twice the longest of the gaps next to that end.
-pub(crate) fn ends_beyond(gaps: &[f64]) -> [f64; 2] {
-    let longest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
+pub(crate) fn beyond_ends(gaps: &[f64]) -> [f64; 2] {
     let k = LOCAL_GAPS.min(gaps.len());
     [&gaps[..k], &gaps[gaps.len() - k..]].map(|some| CLOSING_TO_LOCAL * longest(some))
+}
+
+fn longest(gaps: &[f64]) -> f64 {
+    gaps.iter().copied().fold(0.0, f64::max)
 }

@@ -156,7 +156,7 @@ fn simulate(layout: &Layout, binaries: &Binaries, robot: &str, bag: &Path, folde
     let mut command = layout.command(&binaries.simulate);
     command.arg(folder.join("trajectory.csv")).args(["--robot", robot]);
     command.arg("--poses").arg(bag).arg("--report").arg(folder.join("report.json"));
-    command.arg("-o").arg(folder.join("execution.mcap")).arg("--picture").arg(folder.join("execution.svg"));
+    command.args(["--format", "json"]).arg("-o").arg(folder.join("execution.mcap")).arg("--picture").arg(folder.join("execution.svg"));
     let output = command.stderr(Stdio::inherit()).output().map_err(Failure::io("run", &binaries.simulate))?;
     if !output.status.success() {
         return Err(Failure::Command { what: "reorder-simulate".into(), status: output.status });
@@ -227,7 +227,7 @@ fn print_table(runs: &[Value]) {
         println!(
             "{:<16}{:>6}{:>7}{:>11}{:>11.2}{:>7.3}{:>7.3}{:>7.3}{:>12.2}{:>11.3}{:>12.2}{:>10}",
             run["name"].as_str().unwrap_or("?"),
-            run["n_poses"],
+            run["n_poses"].to_string(),
             if run["order_exact"] == json!(true) { "yes" } else { "NO" },
             run["verdict"].as_str().unwrap_or("?"),
             number("/duration_s", 1.0),
@@ -237,7 +237,7 @@ fn print_table(runs: &[Value]) {
             number("/tracking_max_rad", 1e3),
             number("/pose_error_max_m", 1e3),
             number("/pose_error_max_rad", 1e3),
-            run["contacts"],
+            run["contacts"].to_string(),
         );
     }
     println!();

@@ -1,6 +1,8 @@
 //! Text files that appear whole or not at all.
 
+use std::fs::Permissions;
 use std::io::Write;
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
 use mujoco_sim::planner::se3_geom::xyzw_from_rotation;
@@ -10,7 +12,9 @@ use mujoco_sim::{Execution, SimError};
 pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), SimError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let write = || -> std::io::Result<()> {
-        let mut pending = tempfile::NamedTempFile::new_in(folder)?;
+        // Temporary files are private otherwise; the umask takes away from this as from any new file.
+        let public = Permissions::from_mode(0o666);
+        let mut pending = tempfile::Builder::new().permissions(public).tempfile_in(folder)?;
         pending.write_all(text.as_bytes())?;
         pending.persist(path)?;
         Ok(())

@@ -40,7 +40,7 @@ struct Arguments {
     #[arg(long, value_name = "REPORT.json", requires = "poses")]
     report: Option<PathBuf>,
     /// How long the run goes on after the trajectory's end, in s
-    #[arg(long, default_value_t = ExecuteOptions::default().settle_s)]
+    #[arg(long, default_value_t = ExecuteOptions::default().settle_s, allow_negative_numbers = true)]
     settle: f64,
     /// Writes trajectory, poses and executed tool path as a bag
     #[arg(short, long, value_name = "OUT.mcap")]

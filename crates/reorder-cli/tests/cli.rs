@@ -1,0 +1,203 @@
+//! The command as users and scripts call it: output, exit codes, and one clear sentence for everything that is wrong.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+const BAGS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data");
+
+fn reorder(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_reorder")).args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn out(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// Exit code and the sentence on standard error; there is exactly one line, and nothing on standard output.
+fn refusal(arguments: &[&str]) -> (i32, String) {
+    let output = reorder(arguments);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(output.stdout.is_empty());
+    (output.status.code().unwrap(), said.trim_end().to_owned())
+}
+
+fn file(folder: &TempDir, name: &str, content: &str) -> String {
+    let path = folder.path().join(name);
+    fs::write(&path, content).unwrap();
+    path.display().to_string()
+}
+
+fn truth(name: &str) -> Vec<u64> {
+    let text = fs::read_to_string(format!("{BAGS}/{name}.truth.json")).unwrap();
+    let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
+    truth["order"].as_array().unwrap().iter().map(|i| i.as_u64().unwrap()).collect()
+}
+
+fn is_truth_up_to_direction(order: &[u64], name: &str) -> bool {
+    let truth = truth(name);
+    order == truth || order.iter().rev().copied().eq(truth)
+}
+
+#[test]
+fn order_prints_the_whole_object_for_a_recorded_bag() {
+    for name in ["lasa_angle", "lasa_gshape", "lasa_sine", "lasa_zshape"] {
+        let text = out(&reorder(&["order", &format!("{BAGS}/{name}")]));
+        let object: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let order: Vec<u64> = object["order"].as_array().unwrap().iter().map(|i| i.as_u64().unwrap()).collect();
+        assert!(is_truth_up_to_direction(&order, name), "{name}");
+        assert_eq!(object["n"], order.len());
+        assert_eq!(object["topology"], "open");
+        assert_eq!(object["method"], "mst");
+        assert_eq!(object["verdict"], "plausible", "nothing is certified yet, and this is not ambiguous");
+        assert_eq!(object["metres_per_radian"], 0.1);
+        assert_eq!(object["weight_stable"], true);
+        for key in ["components", "duplicates", "doubts"] {
+            assert!(object[key].is_array(), "{key}");
+        }
+        for key in ["max_gap", "reach", "epsilon", "injectivity_radius", "margin"] {
+            assert!(object["certificate"].get(key).is_some(), "{key}");
+        }
+    }
+}
+
+/// Points on a quarter circle, written in the order 0 3 6 9 2 5 8 1 4 7.
+fn arc(columns: &str, row: impl Fn(f64) -> String) -> String {
+    let rows: Vec<String> = (0..10).map(|i| row(f64::from((i * 3) % 10) * 0.15)).collect();
+    format!("{columns}\n{}\n", rows.join("\n"))
+}
+
+#[test]
+fn order_reads_every_manifold_it_offers_by_its_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    // Line i of the file is place 3i mod 10, so place k is line 7k mod 10.
+    let expected: String = (0..10).map(|k| format!("{}\n", (7 * k) % 10)).collect();
+    let half = |a: f64| ((0.5 * a).sin(), (0.5 * a).cos());
+    let tables = [
+        ("r2", arc("x,y", |a| format!("{},{}", a.cos(), a.sin()))),
+        ("r3", arc("x,y,z", |a| format!("{},{},{}", a.cos(), a.sin(), a))),
+        ("rn", arc("t,x,y", |a| format!("junk,{},{}", a.cos(), a.sin()))),
+        ("so3", arc("qx,qy,qz,qw", |a| format!("0,{},0,{}", half(a).0, half(a).1))),
+        ("se3", arc("x,y,z,qx,qy,qz,qw", |a| format!("{},0,{},0,{},0,{}", a.cos(), a.sin(), half(a).0, half(a).1))),
+    ];
+    for (manifold, table) in &tables {
+        let path = file(&folder, &format!("{manifold}.csv"), table);
+        for extra in [&["--manifold", manifold][..], &[]] {
+            let arguments = [&["order", &path, "--format", "indices"], extra].concat();
+            assert_eq!(out(&reorder(&arguments)), expected, "{manifold}");
+        }
+    }
+    let path = file(&folder, "r2.csv", &tables[0].1);
+    let csv = out(&reorder(&["order", &path, "--format", "csv", "--start", "3"]));
+    // Place 9 is line 3: the order from that end.
+    assert_eq!(csv.lines().next(), Some("x,y"));
+    let first: Vec<f64> = csv.lines().nth(1).unwrap().split(',').map(|f| f.parse().unwrap()).collect();
+    let angle = 9.0 * 0.15_f64;
+    assert_eq!(first, [angle.cos(), angle.sin()], "numbers come back to the last bit");
+}
+
+#[test]
+fn order_reads_standard_input() {
+    use std::io::Write;
+    let mut child = Command::new(env!("CARGO_BIN_EXE_reorder"))
+        .args(["order", "-", "--format", "indices"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(b"x,y\n0,0\n2,0.1\n1,0\n").unwrap();
+    assert_eq!(out(&child.wait_with_output().unwrap()), "0\n2\n1\n");
+}
+
+#[test]
+fn plan_writes_csv_and_mcap() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = format!("{BAGS}/lasa_sine");
+    let csv = folder.path().join("plan.csv").display().to_string();
+    let run = reorder(&["plan", &bag, "--robot", "ur5e", "--rate", "125", "-o", &csv]);
+    assert!(out(&run).is_empty());
+    let text = fs::read_to_string(&csv).unwrap();
+    let header = text.lines().next().unwrap();
+    assert!(header.starts_with("t,shoulder_pan_joint.position,shoulder_lift_joint.position,"), "{header}");
+    assert_eq!(header.split(',').count(), 1 + 3 * 6);
+    let rows: Vec<Vec<f64>> =
+        text.lines().skip(1).map(|line| line.split(',').map(|f| f.parse().unwrap()).collect()).collect();
+    assert!(rows.windows(2).all(|r| r[0][0] < r[1][0]));
+    // Points come at least as often as asked for.
+    assert!(rows.windows(2).all(|r| r[1][0] - r[0][0] <= 1.0 / 125.0 + 1e-9));
+    assert!(rows[0][7..].iter().chain(&rows[rows.len() - 1][7..]).all(|x| x.abs() < 1e-9), "at rest at both ends");
+
+    let mcap = folder.path().join("plan.mcap").display().to_string();
+    out(&reorder(&["plan", &bag, "--robot", "ur5e", "-o", &mcap]));
+    let sets = pose_bag::read_poses(&mcap, Some("/reorder/ordered_poses")).unwrap();
+    assert_eq!(sets[0].poses.len(), truth("lasa_sine").len());
+
+    let from = "--from=-1.5708,-1.5708,1.5708,-1.5708,-1.5708,0.0";
+    let text = out(&reorder(&["plan", &bag, "--robot", "ur5e", from]));
+    let first: Vec<&str> = text.lines().nth(1).unwrap().split(',').take(3).collect();
+    assert_eq!(first, ["0", "-1.5708", "-1.5708"], "without -o the CSV goes to standard output, from where the robot stands");
+}
+
+#[test]
+fn bad_input_exits_with_2_and_names_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let pose = "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n0.1,0,0,0,0,0,1\n";
+    for (name, content, sentence) in [
+        ("nan.csv", format!("{pose}NaN,0,0,0,0,0,1\n"), "nan.csv, line 4: x is not finite: NaN"),
+        ("zero.csv", format!("{pose}0.2,0,0,0,0,0,0\n"), "zero.csv, line 4: the quaternion is zero, so there is no orientation"),
+        ("norm.csv", format!("{pose}0.2,0,0,0,0,0,2\n"), "norm.csv, line 4: the quaternion has norm 2.000000 instead of 1"),
+        ("word.csv", format!("{pose}a,0,0,0,0,0,1\n"), "word.csv, line 4: x is not a number: \"a\""),
+        ("short.csv", format!("{pose}0,0\n"), "short.csv, line 4: 2 fields instead of 7"),
+        ("empty.csv", String::new(), "empty.csv holds no poses"),
+        ("one.csv", "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n".into(), "one.csv: there are 1 points to order, but at least 2 are needed"),
+        ("equal.csv", "x,y\n1,2\n1,2\n1,2\n".into(), "equal.csv: all 3 points are equal, so there is nothing to order"),
+        ("columns.csv", "a,b\n1,2\n".into(), "columns.csv has no column x; its columns are a, b"),
+    ] {
+        let path = file(&folder, name, &content);
+        let (code, said) = refusal(&["order", &path]);
+        assert_eq!(code, 2, "{said}");
+        assert!(said.ends_with(sentence) && said.starts_with("reorder: "), "{said}");
+    }
+    let (code, said) = refusal(&["order", "/nowhere/at/all.csv"]);
+    assert_eq!((code, said.as_str()), (2, "reorder: /nowhere/at/all.csv: No such file or directory (os error 2)"));
+    let path = file(&folder, "plan.csv", &format!("{pose}NaN,0,0,0,0,0,1\n"));
+    let (code, said) = refusal(&["plan", &path, "--robot", "ur5e"]);
+    assert_eq!(code, 2);
+    assert!(said.ends_with("plan.csv, line 4: x is not finite: NaN"), "{said}");
+    let (code, said) = refusal(&["plan", &format!("{BAGS}/lasa_sine"), "--robot", "hal9000"]);
+    assert!(code == 2 && said.contains("hal9000") && said.contains("ur5e"), "{said}");
+}
+
+#[test]
+fn a_truncated_bag_is_refused_with_what_could_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = fs::read(format!("{BAGS}/lasa_sine/lasa_sine.mcap")).unwrap();
+    let path = folder.path().join("cut.mcap");
+    fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    let (code, said) = refusal(&["order", path.to_str().unwrap()]);
+    assert_eq!(code, 2);
+    assert!(said.contains("cut.mcap is cut off") && said.contains("readable messages"), "{said}");
+}
+
+/// A pose two metres away is no input error: the poses are fine, this robot cannot reach them.
+#[test]
+fn refusals_exit_with_1_and_leave_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let far = arc("x,y,z,qx,qy,qz,qw", |a| format!("{},0,{},0,0,0,1", 2.0 + 0.1 * a, 0.1 * a));
+    let path = file(&folder, "far.csv", &far);
+    let output = folder.path().join("out.csv");
+    let (code, said) = refusal(&["plan", &path, "--robot", "ur5e", "-o", output.to_str().unwrap()]);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.starts_with("reorder: refused: ") && said.contains("far.csv: ur5e: pose"), "{said}");
+    assert!(said.contains("out of reach") && said.contains("(input pose"), "{said}");
+    assert_eq!(names_in(folder.path()), [PathBuf::from("far.csv")], "nothing half-written stays");
+}
+
+fn names_in(folder: &Path) -> Vec<PathBuf> {
+    fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into()).collect()
+}

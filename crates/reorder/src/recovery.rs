@@ -1,0 +1,79 @@
+//! The order itself: tree, topology, start.
+
+use petgraph::graph::NodeIndex;
+use se3_geom::Manifold;
+
+use crate::curve::Curve;
+use crate::duplicates::{Distinct, merge};
+use crate::error::OrderError;
+use crate::ordering::{Options, TopologyChoice};
+use crate::spanning_tree::{Tree, minimum_spanning_tree};
+use crate::topology::{Closing, closing, rotate_to};
+use crate::walk::{far_end, walk};
+
+/// Distinct points in order: `rows` holds the first row of every group of equal points.
+pub(crate) struct Recovery {
+    pub(crate) distinct: Distinct,
+    pub(crate) rows: Vec<usize>,
+    pub(crate) closed: bool,
+    /// The topology was told from the points, and they leave it open.
+    pub(crate) unsure_of_ends: bool,
+}
+
+pub(crate) fn recover<M: Manifold>(
+    manifold: &M,
+    points: &[M::Point],
+    options: &Options,
+) -> Result<Recovery, OrderError> {
+    let distinct = distinct_points(manifold, points, options)?;
+    let tree = &distinct.tree;
+    let mut rows = rows_along(tree, far_end(tree));
+    let ends = closing(&Curve::new(manifold, points, &rows, false));
+    let closed = match options.topology {
+        TopologyChoice::Auto => ends == Closing::Meets,
+        TopologyChoice::Open => false,
+        TopologyChoice::Closed => true,
+    };
+    let start = options.start.map(|row| (row, distinct.node_of(row)));
+    match start {
+        _ if closed => rotate_to(&mut rows, start.map_or(0, |(_, node)| tree[node])),
+        Some((_, node)) if tree.neighbors(node).count() == 1 => rows = rows_along(tree, node),
+        Some((start, _)) => return Err(OrderError::StartNotAnEnd { start, ends: [rows[0], rows[rows.len() - 1]] }),
+        None if rows[0] > rows[rows.len() - 1] => rows.reverse(),
+        None => {}
+    }
+    let unsure_of_ends = options.topology == TopologyChoice::Auto && ends == Closing::Near;
+    Ok(Recovery { distinct, rows, closed, unsure_of_ends })
+}
+
+impl Recovery {
+    /// The neighbours as (smaller row, greater row), ascending.
+    pub(crate) fn edges(&self) -> Vec<(usize, usize)> {
+        let closing = self.rows.last().zip(self.rows.first()).filter(|_| self.closed);
+        let consecutive = self.rows.iter().zip(&self.rows[1..]);
+        let mut edges: Vec<_> = consecutive.chain(closing).map(|(&a, &b)| (a.min(b), a.max(b))).collect();
+        edges.sort_unstable();
+        edges
+    }
+}
+
+fn distinct_points<M: Manifold>(manifold: &M, points: &[M::Point], options: &Options) -> Result<Distinct, OrderError> {
+    let count = points.len();
+    let needed = if options.topology == TopologyChoice::Closed { 3 } else { 2 };
+    if count < needed {
+        return Err(OrderError::TooFewPoints { count, needed });
+    }
+    if let Some(start) = options.start.filter(|&start| start >= count) {
+        return Err(OrderError::StartOutOfRange { start, count });
+    }
+    let merged = merge(manifold, points, &minimum_spanning_tree(manifold, points)?);
+    match merged.groups.len() {
+        1 => Err(OrderError::AllEqual { count }),
+        distinct if distinct < needed => Err(OrderError::TooFewDistinct { count, distinct, needed }),
+        _ => Ok(merged),
+    }
+}
+
+fn rows_along(tree: &Tree, root: NodeIndex) -> Vec<usize> {
+    walk(tree, root).into_iter().map(|node| tree[node]).collect()
+}
