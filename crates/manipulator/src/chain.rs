@@ -33,7 +33,7 @@ impl Chain {
     }
 
     /// Whether a joint turns (revolute or continuous), so that a full turn brings the arm back to the same pose.
-    pub fn is_rotary(&self, joint: usize) -> bool {
+    pub(crate) fn is_rotary(&self, joint: usize) -> bool {
         self.rotary[joint]
     }
 
@@ -51,6 +51,9 @@ impl Chain {
     /// The body Jacobian J, of shape (6, dof): V = J·q̇ with V = (linear, angular) the tool's twist in the tool frame.
     ///
     /// Jᵢ = Ad(exp(−Bₙqₙ)⋯exp(−Bᵢ₊₁qᵢ₊₁))·Bᵢ (Lynch & Park, eq. 5.18).
+    ///
+    /// # Panics
+    /// If `q` has fewer than dof values.
     pub fn body_jacobian(&self, q: &DVector<f64>) -> Matrix6xX<f64> {
         let mut jacobian = Matrix6xX::zeros(self.dof());
         let mut tool_from_link = Pose::identity();
@@ -59,7 +62,7 @@ impl Chain {
             let turned = tool_from_link.rotation * angular;
             let carried = tool_from_link.rotation * linear + tool_from_link.translation.vector.cross(&turned);
             jacobian.set_column(i, &Twist::new(carried, turned).to_vector());
-            tool_from_link *= Se3Group::exp(self.screws[i] * q[i]);
+            tool_from_link *= Se3Group::exp(self.screws[i] * -q[i]);
         }
         jacobian
     }

@@ -1,5 +1,8 @@
 //! The command `reorder-simulate` from outside.
 
+// Helpers of tests are not seen as tests.
+#![allow(clippy::unwrap_used)]
+
 mod support;
 
 use std::fs;

@@ -94,7 +94,12 @@ fn start_state(robot: &Robot, request: &Request) -> Result<Option<DVector<f64>>,
 }
 
 /// The order; an open one begins at the end nearer to the robot's tool, where the robot's state is known.
-fn order_from(robot: &Robot, config: &Config, poses: &[Pose], start: Option<&DVector<f64>>) -> Result<Ordering, Refusal> {
+fn order_from(
+    robot: &Robot,
+    config: &Config,
+    poses: &[Pose],
+    start: Option<&DVector<f64>>,
+) -> Result<Ordering, Refusal> {
     let mut options = config.ordering();
     let ordering = order_poses(poses, config.metres_per_radian, &options)?;
     let (None, Some(start)) = (options.start, start) else { return Ok(ordering) };

@@ -70,7 +70,9 @@ pub enum Refusal {
         input_pose: Option<usize>,
     },
     /// The planned tool path misses a pose by more than the tolerance.
-    #[error("the planned path passes input pose {input_pose} at {error_m:.2e} m and {error_rad:.2e} rad, more than the tolerance")]
+    #[error(
+        "the planned path passes input pose {input_pose} at {error_m:.2e} m and {error_rad:.2e} rad, more than the tolerance"
+    )]
     Accuracy {
         /// Which pose.
         input_pose: usize,

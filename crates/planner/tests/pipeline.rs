@@ -62,7 +62,10 @@ fn every_pose_is_passed_in_the_true_order() {
         assert_eq!(plan.pose_times_s.len(), recording.poses.len());
         let times: Vec<f64> = order.iter().map(|&i| plan.pose_times_s[i]).collect();
         assert!(times.windows(2).all(|t| t[0] < t[1]), "{name}");
-        assert!((times[times.len() - 1] - plan.trajectory.duration_s()).abs() < 1e-9, "{name}: the last pose is the end");
+        assert!(
+            (times[times.len() - 1] - plan.trajectory.duration_s()).abs() < 1e-9,
+            "{name}: the last pose is the end"
+        );
         // Twice the path tolerance of 0.1 mm and 1 mrad, as the pipeline promises; measured on its own here.
         for (pose, &time) in recording.poses.iter().zip(&plan.pose_times_s) {
             let tool = tool_at(&plan, time);
@@ -186,7 +189,10 @@ fn refusals_name_the_input() {
     }
     let unreachable = said(&Config::default(), &far);
     assert!(!unreachable.is_bad_input());
-    assert!(unreachable.to_string().contains("out of reach") && unreachable.to_string().contains("input pose"), "{unreachable}");
+    assert!(
+        unreachable.to_string().contains("out of reach") && unreachable.to_string().contains("input pose"),
+        "{unreachable}"
+    );
 
     // Two strands crossing at a right angle: nothing says which way to turn there.
     let mut cross = Vec::new();

@@ -14,7 +14,9 @@ use crate::failure::Failure;
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::BadInput(format!("standard output: {error}"))),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::BadInput(format!("standard output: {error}")))
+        }
         _ => Ok(()),
     }
 }
@@ -47,7 +49,12 @@ pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// Writes a bag with the joint trajectory and the ordered poses, on the topics of the ROS node.
-pub(crate) fn write_bag(path: &Path, plan: &Plan, frame_id: &str, poses: &[planner::se3_geom::Pose]) -> Result<(), Failure> {
+pub(crate) fn write_bag(
+    path: &Path,
+    plan: &Plan,
+    frame_id: &str,
+    poses: &[planner::se3_geom::Pose],
+) -> Result<(), Failure> {
     let header = || msg::Header { stamp: msg::Time::default(), frame_id: frame_id.to_owned() };
     let ordered: Vec<msg::Pose> = plan.ordering.order.iter().map(|&i| (&poses[i]).into()).collect();
     let path_poses = ordered.iter().map(|&pose| msg::PoseStamped { header: header(), pose }).collect();

@@ -116,11 +116,11 @@ fn load_robot(name: &str, limits: Option<&Path>) -> Result<Robot, Failure> {
     };
     let is_file = name.ends_with(".urdf");
     match limits {
-        None if is_file => Err(Failure::BadInput(format!("{name}: a URDF has no acceleration and jerk limits: give --limits"))),
-        None => Robot::shipped(name).map_err(Failure::bad_input),
-        Some(limits) if is_file => {
-            Robot::from_urdf(&read(Path::new(name))?, &read(limits)?).map_err(in_file(limits))
+        None if is_file => {
+            Err(Failure::BadInput(format!("{name}: a URDF has no acceleration and jerk limits: give --limits")))
         }
+        None => Robot::shipped(name).map_err(Failure::bad_input),
+        Some(limits) if is_file => Robot::from_urdf(&read(Path::new(name))?, &read(limits)?).map_err(in_file(limits)),
         Some(limits) => Robot::shipped_with(name, &read(limits)?).map_err(in_file(limits)),
     }
 }

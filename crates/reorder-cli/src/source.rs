@@ -60,9 +60,7 @@ impl Source {
             None | Some(Manifold::Se3) => Points::Poses(poses),
             Some(Manifold::So3) => Points::Rotations(poses.iter().map(|p| p.rotation).collect()),
             Some(Manifold::R2) => Points::Plane(poses.iter().map(|p| p.translation.vector.xy()).collect()),
-            Some(Manifold::R3 | Manifold::Rn) => {
-                Points::Space(poses.iter().map(|p| p.translation.vector).collect())
-            }
+            Some(Manifold::R3 | Manifold::Rn) => Points::Space(poses.iter().map(|p| p.translation.vector).collect()),
         })
     }
 

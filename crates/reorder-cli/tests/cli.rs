@@ -140,7 +140,11 @@ fn plan_writes_csv_and_mcap() {
     let from = "--from=-1.5708,-1.5708,1.5708,-1.5708,-1.5708,0.0";
     let text = out(&reorder(&["plan", &bag, "--robot", "ur5e", from]));
     let first: Vec<&str> = text.lines().nth(1).unwrap().split(',').take(3).collect();
-    assert_eq!(first, ["0", "-1.5708", "-1.5708"], "without -o the CSV goes to standard output, from where the robot stands");
+    assert_eq!(
+        first,
+        ["0", "-1.5708", "-1.5708"],
+        "without -o the CSV goes to standard output, from where the robot stands"
+    );
 }
 
 #[test]
@@ -149,12 +153,24 @@ fn bad_input_exits_with_2_and_names_file_and_line() {
     let pose = "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n0.1,0,0,0,0,0,1\n";
     for (name, content, sentence) in [
         ("nan.csv", format!("{pose}NaN,0,0,0,0,0,1\n"), "nan.csv, line 4: x is not finite: NaN"),
-        ("zero.csv", format!("{pose}0.2,0,0,0,0,0,0\n"), "zero.csv, line 4: the quaternion is zero, so there is no orientation"),
-        ("norm.csv", format!("{pose}0.2,0,0,0,0,0,2\n"), "norm.csv, line 4: the quaternion has norm 2.000000 instead of 1"),
+        (
+            "zero.csv",
+            format!("{pose}0.2,0,0,0,0,0,0\n"),
+            "zero.csv, line 4: the quaternion is zero, so there is no orientation",
+        ),
+        (
+            "norm.csv",
+            format!("{pose}0.2,0,0,0,0,0,2\n"),
+            "norm.csv, line 4: the quaternion has norm 2.000000 instead of 1",
+        ),
         ("word.csv", format!("{pose}a,0,0,0,0,0,1\n"), "word.csv, line 4: x is not a number: \"a\""),
         ("short.csv", format!("{pose}0,0\n"), "short.csv, line 4: 2 fields instead of 7"),
         ("empty.csv", String::new(), "empty.csv holds no poses"),
-        ("one.csv", "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n".into(), "one.csv: there are 1 points to order, but at least 2 are needed"),
+        (
+            "one.csv",
+            "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n".into(),
+            "one.csv: there are 1 points to order, but at least 2 are needed",
+        ),
         ("equal.csv", "x,y\n1,2\n1,2\n1,2\n".into(), "equal.csv: all 3 points are equal, so there is nothing to order"),
         ("columns.csv", "a,b\n1,2\n".into(), "columns.csv has no column x; its columns are a, b"),
     ] {

@@ -32,8 +32,7 @@ pub(crate) fn joint_state_input(message: JointState) -> Input {
 }
 
 pub(crate) fn header(frame_id: &str, stamp_ns: i64) -> Header {
-    let stamp =
-        Time { sec: stamp_ns.div_euclid(NANOS) as i32, nanosec: stamp_ns.rem_euclid(NANOS) as u32 };
+    let stamp = Time { sec: stamp_ns.div_euclid(NANOS) as i32, nanosec: stamp_ns.rem_euclid(NANOS) as u32 };
     Header { stamp, frame_id: frame_id.to_owned() }
 }
 

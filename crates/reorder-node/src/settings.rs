@@ -51,8 +51,7 @@ fn load(settings: &RobotSettings) -> Result<Robot, NodeError> {
         return Robot::shipped(&settings.name).map_err(|e| NodeError::Parameters(format!("robot.name: {e}")));
     }
     let read = |file: &str| {
-        std::fs::read_to_string(file)
-            .map_err(|e| NodeError::RobotFile { file: file.to_owned(), reason: e.to_string() })
+        std::fs::read_to_string(file).map_err(|e| NodeError::RobotFile { file: file.to_owned(), reason: e.to_string() })
     };
     Robot::from_urdf(&read(&settings.urdf_file)?, &read(&settings.settings_file)?)
         .map_err(|e| NodeError::RobotFile { file: settings.urdf_file.clone(), reason: e.to_string() })

@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 use planner::pose_bag::{BagWriter, msg};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-const PARAMETERS: [&str; 3] = ["--ros-args", "--params-file", concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/reorder.yaml")];
+const PARAMETERS: [&str; 3] =
+    ["--ros-args", "--params-file", concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/reorder.yaml")];
 
 /// A ROS domain of its own for every test, so that tests run side by side do not hear each other.
 struct Domain(u8);

@@ -48,7 +48,8 @@ pub fn minimum_spanning_tree<M: Manifold>(manifold: &M, points: &[M::Point]) -> 
         tree.add_node(row);
     }
     // The shortest edge from each point outside to the tree, and which of them is the shortest of all.
-    let mut outside: Vec<(usize, Edge)> = (1..points.len()).map(|v| (v, Edge::between(manifold, points, 0, v))).collect();
+    let mut outside: Vec<(usize, Edge)> =
+        (1..points.len()).map(|v| (v, Edge::between(manifold, points, 0, v))).collect();
     let mut nearest = (0..outside.len()).reduce(|a, b| if outside[b].1.precedes(&outside[a].1) { b } else { a });
     while let Some(k) = nearest.take() {
         let (joined, edge) = outside.swap_remove(k);

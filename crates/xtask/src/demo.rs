@@ -49,7 +49,14 @@ struct Binaries {
 fn build(layout: &Layout) -> Outcome<Binaries> {
     println!("building the node and the simulation (the first time takes some minutes) …");
     let mut cargo = layout.cargo();
-    cargo.args(["build", "--package", "reorder-node", "--package", "mujoco-sim", "--message-format=json-render-diagnostics"]);
+    cargo.args([
+        "build",
+        "--package",
+        "reorder-node",
+        "--package",
+        "mujoco-sim",
+        "--message-format=json-render-diagnostics",
+    ]);
     let output = cargo.stderr(Stdio::inherit()).output().map_err(Failure::io("run", "cargo"))?;
     if !output.status.success() {
         return Err(Failure::Command { what: "cargo build".into(), status: output.status });
@@ -140,7 +147,12 @@ fn exchange(layout: &Layout, binaries: &Binaries, robot: &str, bag: &Path, folde
     let node = Running::start("reorder_node", &mut node)?;
 
     let mut receiver = peer("receive_trajectory.py");
-    receiver.args(["--limits", &format!("config/robots/{robot}.yaml"), "--urdf", &format!("config/robots/{robot}.urdf")]);
+    receiver.args([
+        "--limits",
+        &format!("config/robots/{robot}.yaml"),
+        "--urdf",
+        &format!("config/robots/{robot}.urdf"),
+    ]);
     receiver.args(["--timeout", PEER_TIMEOUT_S]).arg("--bag").arg(bag).arg("--out").arg(folder);
     let mut receiver = Running::start("receive_trajectory.py", receiver.stdout(Stdio::piped()))?;
     receiver.wait_for_line("MATCHED")?;
@@ -156,7 +168,12 @@ fn simulate(layout: &Layout, binaries: &Binaries, robot: &str, bag: &Path, folde
     let mut command = layout.command(&binaries.simulate);
     command.arg(folder.join("trajectory.csv")).args(["--robot", robot]);
     command.arg("--poses").arg(bag).arg("--report").arg(folder.join("report.json"));
-    command.args(["--format", "json"]).arg("-o").arg(folder.join("execution.mcap")).arg("--picture").arg(folder.join("execution.svg"));
+    command
+        .args(["--format", "json"])
+        .arg("-o")
+        .arg(folder.join("execution.mcap"))
+        .arg("--picture")
+        .arg(folder.join("execution.svg"));
     let output = command.stderr(Stdio::inherit()).output().map_err(Failure::io("run", &binaries.simulate))?;
     if !output.status.success() {
         return Err(Failure::Command { what: "reorder-simulate".into(), status: output.status });
@@ -220,10 +237,22 @@ fn faults(run: &Value) -> Vec<String> {
 fn print_table(runs: &[Value]) {
     println!(
         "\n{:<16}{:>6}{:>7}{:>11}{:>11}{:>7}{:>7}{:>7}{:>12}{:>11}{:>12}{:>10}",
-        "shape", "poses", "exact", "verdict", "duration/s", "v/lim", "a/lim", "j/lim", "track/mrad", "pose/mm", "pose/mrad", "contacts"
+        "shape",
+        "poses",
+        "exact",
+        "verdict",
+        "duration/s",
+        "v/lim",
+        "a/lim",
+        "j/lim",
+        "track/mrad",
+        "pose/mm",
+        "pose/mrad",
+        "contacts"
     );
     for run in runs {
-        let number = |pointer: &str, scale: f64| run.pointer(pointer).and_then(Value::as_f64).unwrap_or(f64::NAN) * scale;
+        let number =
+            |pointer: &str, scale: f64| run.pointer(pointer).and_then(Value::as_f64).unwrap_or(f64::NAN) * scale;
         println!(
             "{:<16}{:>6}{:>7}{:>11}{:>11.2}{:>7.3}{:>7.3}{:>7.3}{:>12.2}{:>11.3}{:>12.2}{:>10}",
             run["name"].as_str().unwrap_or("?"),

@@ -38,8 +38,10 @@ fn draw_into(svg: &mut String, execution: &Execution, poses: &[Pose]) -> Drawn {
     let places: Vec<Vector3<f64>> = poses.iter().map(|pose| pose.translation.vector).collect();
     let tool = tool_path(execution);
     let [longest, middle, shortest] = axes_by_extent(tool.iter().chain(&places));
-    projection(&panels[0], &tool, &places, [longest, middle])?;
-    projection(&panels[1], &tool, &places, [longest, shortest])?;
+    // The arm stands still while it settles, so that colours tell when it moved.
+    let moving = execution.samples.iter().filter(|sample| sample.time_s <= execution.duration_s).count();
+    projection(&panels[0], &tool, moving, &places, [longest, middle])?;
+    projection(&panels[1], &tool, moving, &places, [longest, shortest])?;
     curves(&panels[2], execution, "tracking error / rad", |sample, joint| {
         sample.position[joint] - sample.reference[joint]
     })?;
@@ -68,12 +70,12 @@ fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-fn projection(panel: &Area, tool: &[Vector3<f64>], poses: &[Vector3<f64>], axes: [usize; 2]) -> Drawn {
+fn projection(panel: &Area, tool: &[Vector3<f64>], moving: usize, poses: &[Vector3<f64>], axes: [usize; 2]) -> Drawn {
     let flat = |point: &Vector3<f64>| (point[axes[0]], point[axes[1]]);
     let (across, up) = same_scale(panel, tool.iter().chain(poses).map(flat));
     let [x, y] = axes.map(|axis| ["x / m", "y / m", "z / m"][axis]);
     let mut chart = ChartBuilder::on(panel)
-        .caption("tool path, dark at the start, and poses", ("sans-serif", 16))
+        .caption("tool path, dark (start) to yellow (end), and poses (red)", ("sans-serif", 16))
         .margin(10)
         .x_label_area_size(35)
         .y_label_area_size(60)
@@ -83,7 +85,7 @@ fn projection(panel: &Area, tool: &[Vector3<f64>], poses: &[Vector3<f64>], axes:
     let piece = tool.len().div_ceil(PIECES).max(1);
     let pieces = (0..tool.len().saturating_sub(1)).step_by(piece).map(|start| {
         let end = (start + piece).min(tool.len() - 1);
-        let colour = colour_of_time(start as f64 / tool.len() as f64);
+        let colour = colour_of_time(start as f64 / moving as f64);
         PathElement::new(tool[start..=end].iter().map(flat).collect::<Vec<_>>(), colour.stroke_width(2))
     });
     chart.draw_series(pieces)?;
@@ -142,6 +144,11 @@ fn curves(panel: &Area, execution: &Execution, what: &str, value: impl Fn(&Sampl
             .label(tracking.name.as_str())
             .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 16, y)], colour.stroke_width(2)));
     }
-    chart.configure_series_labels().background_style(WHITE.mix(0.8)).label_font(("sans-serif", 11)).draw()?;
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.8))
+        .label_font(("sans-serif", 11))
+        .draw()?;
     Ok(())
 }
