@@ -74,6 +74,8 @@ const WINDOW_STEPS: f64 = 2.0;
 const COARSE_POINTS: usize = 1000;
 /// A jerk of ten accelerations a second has a tenth of a second to build up an acceleration: three intervals resolve it.
 const GRIDPOINTS_PER_SECOND: f64 = 30.0;
+/// A first solution that is broken by more between its gridpoints needs twice as many: it has bends that they miss.
+const TOO_COARSE: f64 = 1.1;
 /// Rounds of tightening limits where the audit finds them broken.
 const TIGHTENINGS: usize = 5;
 /// A slowdown by less than this is not worth another round.
@@ -139,10 +141,11 @@ fn single_quintic(path: &JointPath, travel: f64, limits: &Limits, shortest: f64)
 
 /// The best of several rounds of solving and tightening, with the duration of the second-order solution.
 fn optimised(path: &JointPath, limits: &Limits, sampling: &Sampling<'_>) -> Result<(Smoothed, f64)> {
-    let (mut grid, second_order_duration) = grid(path, limits)?;
+    let (mut gridpoints, second_order_duration) = grid(path, limits, 1)?;
+    let mut coarse = true;
     let mut best: Option<(f64, Smoothed)> = None;
     for _ in 0..=TIGHTENINGS {
-        let profile = match grid.third_order() {
+        let profile = match gridpoints.third_order() {
             Ok(profile) => Smoothed::new(profile, WINDOW_STEPS / sampling.rate_hz),
             // Tightening may have made the problem infeasible or ill-posed; what was found before still stands.
             Err(_) if best.is_some() => break,
@@ -151,7 +154,12 @@ fn optimised(path: &JointPath, limits: &Limits, sampling: &Sampling<'_>) -> Resu
         let trajectory = sample(path, &profile, profile.duration(), sampling);
         let slowdown = slowdown(&against(limits, &trajectory).max_ratio);
         let duration = profile.duration() * slowdown.max(1.0);
-        tighten(&mut grid, limits, &trajectory, &profile);
+        if coarse && slowdown > TOO_COARSE {
+            gridpoints = grid(path, limits, 2)?.0;
+        } else {
+            tighten(&mut gridpoints, limits, &trajectory, &profile);
+        }
+        coarse = false;
         if best.as_ref().is_none_or(|(least, _)| duration < *least) {
             best = Some((duration, profile));
         }
@@ -164,14 +172,14 @@ fn optimised(path: &JointPath, limits: &Limits, sampling: &Sampling<'_>) -> Resu
 }
 
 /// Gridpoints that share the path and its second-order time evenly, half and half.
-fn grid(path: &JointPath, limits: &Limits) -> Result<(Grid, f64)> {
+fn grid(path: &JointPath, limits: &Limits, density: usize) -> Result<(Grid, f64)> {
     let (first, last) = path.domain();
     let coarse = COARSE_POINTS.max(4 * path.knots().len());
     let even: Vec<f64> = (0..=coarse).map(|k| first + (last - first) * k as f64 / coarse as f64).collect();
     let (_, times) = Grid::new(path, even.clone(), 1.0 / (last - first), limits)?.second_order()?;
     let duration = times[coarse];
     let share = |k: usize| 0.5 * (k as f64 / coarse as f64 + times[k] / duration);
-    let points = ((duration * GRIDPOINTS_PER_SECOND) as usize).max(2 * path.knots().len()).clamp(100, 600);
+    let points = ((duration * GRIDPOINTS_PER_SECOND) as usize).max(path.knots().len()).clamp(100, 400) * density;
     let mut parameters = Vec::with_capacity(points + 1);
     let mut k = 0;
     for i in 0..=points {

@@ -171,6 +171,14 @@ pub enum SimError {
         /// Its time.
         time_s: f64,
     },
+    /// It is not clear which poses are meant.
+    #[error("{file} holds {sets} sets of poses (counted from 0): choose one of them with --message")]
+    PoseSets {
+        /// The file.
+        file: String,
+        /// How many there are.
+        sets: usize,
+    },
     /// A report does not say when the tool should be where.
     #[error("{file} is no report of a plan: {reason}")]
     Report {

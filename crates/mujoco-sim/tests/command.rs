@@ -188,6 +188,10 @@ fn bad_input_gets_one_sentence_that_says_where() {
     assert!(
         with("--robot ur5e --poses poses.csv --report half.json").starts_with("half.json is no report of a plan: ")
     );
+    assert_eq!(
+        with("--robot ur5e --poses poses.csv --message 3"),
+        "poses.csv holds 1 sets of poses (counted from 0): choose one of them with --message"
+    );
     assert!(with("--robot ur5e -o run.bag").contains("must end in .mcap"));
     assert!(with("--robot ur5e --picture nowhere/run.svg").starts_with("nowhere/run.svg could not be written: "));
 }

@@ -40,5 +40,4 @@ fn a_planned_trajectory_takes_the_tool_through_every_pose() {
     let mut rotated = plan.pose_times_s.clone();
     rotated.rotate_left(1);
     assert!(execution.pose_errors(&poses, &rotated).expect("the same times").max_m > 0.01);
-    println!("{errors:?} {} rad {} s", execution.tracking_max_rad, execution.duration_s);
 }

@@ -5,6 +5,7 @@
 //! inputs in, outputs out, no clock, file, thread or ROS inside, so that a transcript repeats bit for bit.
 
 mod config;
+mod message;
 mod pipeline;
 mod refusal;
 mod report;
@@ -12,6 +13,7 @@ mod session;
 
 pub use config::Config;
 pub use manipulator;
+pub use message::trajectory_message;
 pub use pipeline::{Plan, Request, plan};
 pub use pose_bag;
 pub use refusal::Refusal;

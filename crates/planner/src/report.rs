@@ -56,7 +56,7 @@ impl Report {
                     pose_error_max_m: plan.pose_error_max_m,
                     pose_error_max_rad: plan.pose_error_max_rad,
                     pose_times_s: plan.pose_times_s.clone(),
-                    audit: plan.audit.clone(),
+                    audit: plan.audit,
                 }),
                 refusal: None,
             },

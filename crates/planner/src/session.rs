@@ -37,7 +37,7 @@ pub enum Input {
     /// Forget poses and results.
     Clear,
     /// A job was run.
-    Finished(Outcome),
+    Finished(Box<Outcome>),
 }
 
 /// A pose as a message carries it, before anything was checked.
@@ -55,7 +55,7 @@ pub enum Output {
     /// Run this, off the receiving task, and bring back its outcome.
     Run(Job),
     /// Publish this outcome: a trajectory, or a refusal.
-    Publish(Outcome),
+    Publish(Box<Outcome>),
     /// Answer to [`Input::Replan`] or [`Input::Clear`].
     Reply {
         /// Whether it was done.
@@ -116,9 +116,9 @@ pub struct Session {
 
 impl Job {
     /// Plans. Pure and possibly slow.
-    pub fn run(self) -> Outcome {
+    pub fn run(self) -> Box<Outcome> {
         let result = plan(&self.robot, &self.config, &self.request);
-        Outcome { generation: self.generation, request: self.request, result }
+        Box::new(Outcome { generation: self.generation, request: self.request, result })
     }
 }
 
@@ -188,7 +188,7 @@ impl Session {
                 self.generation += 1;
                 self.counters.refused += 1;
                 let request = Request { frame_id, stamp_ns, ..Request::default() };
-                vec![Output::Publish(Outcome { generation: self.generation, request, result: Err(refusal) })]
+                vec![Output::Publish(Box::new(Outcome { generation: self.generation, request, result: Err(refusal) }))]
             }
         }
     }
@@ -209,7 +209,7 @@ impl Session {
         })]
     }
 
-    fn finished(&mut self, outcome: Outcome) -> Vec<Output> {
+    fn finished(&mut self, outcome: Box<Outcome>) -> Vec<Output> {
         self.running = false;
         let mut outputs = Vec::new();
         if outcome.generation == self.generation {

@@ -35,8 +35,9 @@ fn joint_state(names: &[&str], positions: &[f64]) -> Input {
 fn kinds(outputs: &[Output]) -> Vec<String> {
     let kind = |output: &Output| match output {
         Output::Run(_) => "run".to_owned(),
-        Output::Publish(Outcome { request, result, .. }) => {
-            format!("publish {} {}", request.stamp_ns, if result.is_ok() { "plan" } else { "refusal" })
+        Output::Publish(outcome) => {
+            let what = if outcome.result.is_ok() { "plan" } else { "refusal" };
+            format!("publish {} {what}", outcome.request.stamp_ns)
         }
         Output::Reply { success, .. } => format!("reply {success}"),
         Output::Warn(_) => "warn".to_owned(),
@@ -49,7 +50,7 @@ fn only_job(outputs: Vec<Output>) -> Job {
     job
 }
 
-fn only_outcome(outputs: Vec<Output>) -> Outcome {
+fn only_outcome(outputs: Vec<Output>) -> Box<Outcome> {
     let [Output::Publish(outcome)] = <[Output; 1]>::try_from(outputs).unwrap() else { panic!("nothing published") };
     outcome
 }

@@ -1,12 +1,13 @@
 //! Where results go: standard output, or files that appear whole or not at all.
 
 use std::io::{ErrorKind, Write};
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
-use planner::Plan;
 use planner::manipulator::JointTrajectory;
 use planner::pose_bag::BagWriter;
 use planner::pose_bag::msg;
+use planner::{Plan, trajectory_message};
 
 use crate::failure::Failure;
 
@@ -40,7 +41,9 @@ pub(crate) fn trajectory_csv(trajectory: &JointTrajectory) -> String {
 pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let write = || -> std::io::Result<()> {
-        let mut pending = tempfile::NamedTempFile::new_in(folder)?;
+        // Readable by others as far as the umask allows, as any other file would be.
+        let readable = std::fs::Permissions::from_mode(0o666);
+        let mut pending = tempfile::Builder::new().permissions(readable).tempfile_in(folder)?;
         pending.write_all(text.as_bytes())?;
         pending.persist(path)?;
         Ok(())
@@ -60,31 +63,10 @@ pub(crate) fn write_bag(
     let path_poses = ordered.iter().map(|&pose| msg::PoseStamped { header: header(), pose }).collect();
     let write = || {
         let mut bag = BagWriter::create(path)?;
-        bag.write("/joint_trajectory", 0, &trajectory_message(&plan.trajectory))?;
+        bag.write("/joint_trajectory", 0, &trajectory_message(&plan.trajectory, msg::Header::default()))?;
         bag.write("/reorder/ordered_poses", 0, &msg::PoseArray { header: header(), poses: ordered.clone() })?;
         bag.write("/reorder/path", 0, &msg::Path { header: header(), poses: path_poses })?;
         bag.finish()
     };
     write().map_err(Failure::bad_input)
-}
-
-fn trajectory_message(trajectory: &JointTrajectory) -> msg::JointTrajectory {
-    let point = |p: &planner::manipulator::JointPoint| msg::JointTrajectoryPoint {
-        positions: p.positions.clone(),
-        velocities: p.velocities.clone(),
-        accelerations: p.accelerations.clone(),
-        effort: Vec::new(),
-        time_from_start: duration_message(p.time_s),
-    };
-    msg::JointTrajectory {
-        header: msg::Header::default(),
-        joint_names: trajectory.joint_names.clone(),
-        points: trajectory.points.iter().map(point).collect(),
-    }
-}
-
-/// Rounded to the nanosecond; trajectories start at 0 and last minutes, so the seconds fit.
-fn duration_message(time_s: f64) -> msg::Duration {
-    let nanos = (time_s * 1e9).round() as u64;
-    msg::Duration { sec: (nanos / 1_000_000_000) as i32, nanosec: (nanos % 1_000_000_000) as u32 }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use planner::manipulator::Robot;
 use planner::reorder::Verdict;
-use planner::{Config, Refusal, Request, plan};
+use planner::{Config, Report, Request, plan};
 
 use crate::failure::Failure;
 use crate::order::Topology;
@@ -29,6 +29,9 @@ pub(crate) struct Arguments {
     /// Where the trajectory goes: a CSV or an MCAP file; CSV on standard output where it is not given
     #[arg(short, long, value_name = "OUT.csv|OUT.mcap")]
     output: Option<PathBuf>,
+    /// Where the report goes: the JSON object of `order` with the plan's audit and the time of every pose
+    #[arg(long, value_name = "REPORT.json")]
+    report: Option<PathBuf>,
     /// How many metres count as much as one radian when poses are compared
     #[arg(long, value_name = "L")]
     metres_per_radian: Option<f64>,
@@ -75,6 +78,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(path) if as_bag => write_bag(path, &plan, &robot.base_frame, &request.poses),
         Some(path) => write_whole(path, &trajectory_csv(&plan.trajectory)),
     }?;
+    if let Some(path) = &arguments.report {
+        write_whole(path, &(Report::of(&robot.name, &Ok(plan.clone())).to_json() + "\n"))?;
+    }
     let ratio = &plan.audit.max_ratio;
     eprintln!(
         "{} poses, order {:?}; {} points in {:.3} s; peak over limit: velocity {:.3}, acceleration {:.3}, jerk {:.3}",

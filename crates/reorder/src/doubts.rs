@@ -56,7 +56,7 @@ fn of_gap<M: Manifold>(curve: &Curve<M>, gaps: &[f64], repeated: &[bool], k: usi
         reasons
             .push(format!("the median of the gaps around is {times:.1} times this gap: the curve may come back here"));
     }
-    if gaps[k] >= curve.manifold.injectivity_radius() {
+    if gaps[k] >= curve.manifold.injectivity_radius() || curve.log(k, (k + 1) % curve.len()).is_none() {
         reasons
             .push("the gap reaches the injectivity radius, where the shortest way is not unique any more".to_owned());
     }

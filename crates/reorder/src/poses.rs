@@ -16,8 +16,10 @@ use crate::recovery::{Recovery, recover};
 /// # Errors
 /// Those of [`order`](crate::order), and [`OrderError::InvalidLengthScale`].
 pub fn order_poses(poses: &[Pose], metres_per_radian: f64, options: &Options) -> Result<Ordering, OrderError> {
-    let metric_at =
-        |length| Se3::with_metres_per_radian(length).ok_or(OrderError::InvalidLengthScale { value: length });
+    let metric_at = |length: f64| {
+        let metric = Se3::with_metres_per_radian(length).filter(|_| length > 0.0);
+        metric.ok_or(OrderError::InvalidLengthScale { value: length })
+    };
     let metric = metric_at(metres_per_radian)?;
     let recovery = recover(&metric, poses, options)?;
     let edges = recovery.edges();

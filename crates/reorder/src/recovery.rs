@@ -39,7 +39,7 @@ pub(crate) fn recover<M: Manifold>(
         _ if closed => rotate_to(&mut rows, start.map_or(0, |(_, node)| tree[node])),
         Some((_, node)) if tree.neighbors(node).count() == 1 => rows = rows_along(tree, node),
         Some((start, _)) => return Err(OrderError::StartNotAnEnd { start, ends: [rows[0], rows[rows.len() - 1]] }),
-        None if rows[0] > rows[rows.len() - 1] => rows.reverse(),
+        None if rows[0] > rows[rows.len() - 1] => rows = rows_along(tree, distinct.node_of(rows[rows.len() - 1])),
         None => {}
     }
     let unsure_of_ends = options.topology == TopologyChoice::Auto && ends == Closing::Near;

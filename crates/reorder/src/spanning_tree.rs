@@ -24,7 +24,7 @@ impl Edge {
         Self { length: manifold.distance(&points[i], &points[j]), i, j }
     }
     fn precedes(&self, other: &Self) -> bool {
-        // An overflowing distance may be NaN, which precedes nothing and is never preceded: it is joined last, and refused.
+        // A distance that overflows to NaN precedes nothing and is preceded by nothing: sooner or later it is joined, and refused.
         self.length < other.length || (self.length == other.length && (self.i, self.j) < (other.i, other.j))
     }
 }

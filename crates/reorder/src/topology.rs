@@ -17,14 +17,15 @@ const CLOSING_TO_LOCAL: f64 = 2.0;
 pub(crate) enum Closing {
     /// The ends meet: the closing gap is like the gaps around it, and the curve goes straight on across it.
     Meets,
-    /// The ends come so near that a loop with one long gap would look the same.
+    /// The ends come so near that a loop with one long gap or one sharp corner would look the same.
     Near,
     /// The ends are apart.
     Apart,
 }
 
 /// The ends meet where the closing gap is ≤ 1.5 × the longest gap and ≤ 2 × the longest of the five gaps next to either end, and
-/// the curve turns by less than 90° (by log) at both ends. They are near up to twice those bounds, whatever the angles.
+/// the curve turns by less than 90° (by log) at both ends. They are near if only the gap is short enough, or if the gap is up to
+/// twice those bounds and the curve goes on so.
 pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
     let last = path.len() - 1;
     if last < 2 {
@@ -35,12 +36,12 @@ pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
     let allowed = (CLOSING_TO_LONGEST * longest(&gaps)).min(local_first.max(local_last));
     let closing_gap = path.distance(0, last);
     let goes_on = |at, before, after| path.cosine(at, before, after).is_some_and(|c| c < 0.0);
-    if closing_gap > 2.0 * allowed {
-        Closing::Apart
-    } else if closing_gap <= allowed && goes_on(0, last, 1) && goes_on(last, last - 1, 0) {
-        Closing::Meets
-    } else {
-        Closing::Near
+    let goes_on = goes_on(0, last, 1) && goes_on(last, last - 1, 0);
+    match (closing_gap <= allowed, goes_on) {
+        (true, true) => Closing::Meets,
+        (true, false) => Closing::Near,
+        (false, true) if closing_gap <= 2.0 * allowed => Closing::Near,
+        (false, _) => Closing::Apart,
     }
 }
 

@@ -74,11 +74,11 @@ impl Problem<'_> {
         let mut system = BlockTridiagonal { lower: zero.clone(), diagonal: zero.clone(), upper: zero, corners: None };
         let mut right = vec![Vector3::zeros(); n];
         let mut corners = (Matrix3::zeros(), Matrix3::zeros());
-        for knot in 0..n {
+        for (knot, row) in right.iter_mut().enumerate() {
             let is_end = knot == 0 || knot + 1 == n;
             if let (EndRates::Clamped([first, last]), true) = (self.ends, is_end) {
                 system.diagonal[knot] = Matrix3::identity();
-                right[knot] = if knot == 0 { first } else { last };
+                *row = if knot == 0 { first } else { last };
                 continue;
             }
             let (before, after) = self.neighbours(knot);
@@ -86,7 +86,7 @@ impl Problem<'_> {
                 let h = self.lengths[segment];
                 let block = self.carry(segment).transpose() * (2.0 / h);
                 system.diagonal[knot] += Matrix3::identity() * (4.0 / h);
-                right[knot] += self.displacements[segment] * (6.0 / (h * h));
+                *row += self.displacements[segment] * (6.0 / (h * h));
                 match knot {
                     0 if n == 2 => system.upper[0] += block,
                     0 => corners.0 += block,
@@ -97,7 +97,7 @@ impl Problem<'_> {
                 let h = self.lengths[segment];
                 let block = self.carry(segment) * (2.0 / h);
                 system.diagonal[knot] += Matrix3::identity() * (4.0 / h);
-                right[knot] += self.displacements[segment] * (6.0 / (h * h));
+                *row += self.displacements[segment] * (6.0 / (h * h));
                 if knot + 1 < n {
                     system.upper[knot] += block;
                 } else if n == 2 {
@@ -122,15 +122,14 @@ impl Problem<'_> {
         diagonal: &mut [Matrix3<f64>],
     ) {
         let n = rates.len();
-        for knot in 0..n {
+        for (knot, rate) in rates.iter().enumerate() {
             if matches!(self.ends, EndRates::Clamped(_)) && (knot == 0 || knot + 1 == n) {
                 continue;
             }
             let (before, after) = self.neighbours(knot);
             for (segment, sign) in [(before, 1.0), (after, -1.0)] {
                 let Some(segment) = segment else { continue };
-                let (value, derivative) =
-                    quadratic_acceleration(&rates[knot], &(self.displacements[segment] * (0.5 * sign)));
+                let (value, derivative) = quadratic_acceleration(rate, &(self.displacements[segment] * (0.5 * sign)));
                 defect[knot] += value * (sign * weight);
                 diagonal[knot] += derivative * (sign * weight);
             }

@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use mujoco_sim::planner::manipulator::{JointPoint, JointTrajectory};
+use mujoco_sim::planner::manipulator::JointTrajectory;
 use mujoco_sim::planner::pose_bag::{BagWriter, msg};
+use mujoco_sim::planner::trajectory_message;
 use mujoco_sim::{Execution, SimError};
 
 use crate::due::DuePoses;
-
-const NANOSECONDS: u64 = 1_000_000_000;
 
 /// Frame of the tool path where the poses do not name theirs: the arm's base is the origin of its model.
 const BASE_FRAME: &str = "base_link";
@@ -21,12 +20,13 @@ pub(crate) fn write(
     execution: &Execution,
 ) -> Result<(), SimError> {
     let frame_id = if due.frame_id.is_empty() { BASE_FRAME } else { &due.frame_id };
-    let header = |nanos: u64| {
-        let duration = duration(nanos);
-        msg::Header { stamp: msg::Time { sec: duration.sec, nanosec: duration.nanosec }, frame_id: frame_id.to_owned() }
+    let header = |nanos: i64| msg::Header {
+        // A run lasts an hour at most, so that its seconds fit.
+        stamp: msg::Time::from_nanos(nanos).unwrap_or_default(),
+        frame_id: frame_id.to_owned(),
     };
     let mut bag = BagWriter::create(path)?;
-    bag.write("/joint_trajectory", 0, &trajectory_message(trajectory))?;
+    bag.write("/joint_trajectory", 0, &trajectory_message(trajectory, msg::Header::default()))?;
     if !due.poses.is_empty() {
         let poses = due.poses.iter().map(Into::into).collect();
         bag.write("/reorder/poses", 0, &msg::PoseArray { header: header(0), poses })?;
@@ -36,31 +36,11 @@ pub(crate) fn write(
         Some(msg::PoseStamped { header: header(nanos(sample.time_s)), pose })
     });
     let end = execution.samples.last().map_or(0, |sample| nanos(sample.time_s));
-    bag.write("/reorder/executed_path", end, &msg::Path { header: header(0), poses: tool.collect() })?;
+    bag.write("/reorder/executed_path", end.unsigned_abs(), &msg::Path { header: header(0), poses: tool.collect() })?;
     bag.finish()?;
     Ok(())
 }
 
-fn trajectory_message(trajectory: &JointTrajectory) -> msg::JointTrajectory {
-    let point = |point: &JointPoint| msg::JointTrajectoryPoint {
-        positions: point.positions.clone(),
-        velocities: point.velocities.clone(),
-        accelerations: point.accelerations.clone(),
-        effort: Vec::new(),
-        time_from_start: duration(nanos(point.time_s)),
-    };
-    msg::JointTrajectory {
-        header: msg::Header::default(),
-        joint_names: trajectory.joint_names.clone(),
-        points: trajectory.points.iter().map(point).collect(),
-    }
-}
-
-fn nanos(time_s: f64) -> u64 {
-    (time_s * NANOSECONDS as f64).round() as u64
-}
-
-/// A run lasts an hour at most, so that the seconds fit.
-fn duration(nanos: u64) -> msg::Duration {
-    msg::Duration { sec: (nanos / NANOSECONDS) as i32, nanosec: (nanos % NANOSECONDS) as u32 }
+fn nanos(time_s: f64) -> i64 {
+    (time_s * 1e9).round() as i64
 }

@@ -1,12 +1,29 @@
 //! Where the tool should be, and when.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::Args;
 use mujoco_sim::SimError;
 use mujoco_sim::planner::pose_bag::read_poses;
 use mujoco_sim::planner::se3_geom::Pose;
 use serde::Deserialize;
+
+#[derive(Args)]
+pub(crate) struct PoseSource {
+    /// The poses the trajectory was planned for: CSV, TUM, MCAP file or the folder of a bag
+    #[arg(long, value_name = "FILE|BAG")]
+    poses: Option<PathBuf>,
+    /// Topic of the poses, where the bag has several
+    #[arg(long, requires = "poses")]
+    topic: Option<String>,
+    /// Which PoseArray message of the topic, counted from 0, where there are several
+    #[arg(long, value_name = "INDEX", requires = "poses")]
+    message: Option<usize>,
+    /// The plan's report (JSON), which says when each pose is due
+    #[arg(long, value_name = "REPORT.json", requires = "poses")]
+    report: Option<PathBuf>,
+}
 
 /// The poses a trajectory was planned for.
 pub(crate) struct DuePoses {
@@ -29,17 +46,19 @@ struct Plan {
 }
 
 impl DuePoses {
-    pub(crate) fn none() -> Self {
-        Self { frame_id: String::new(), poses: Vec::new(), times_s: None }
-    }
-
-    pub(crate) fn read(poses: &Path, topic: Option<&str>, report: Option<&Path>) -> Result<Self, SimError> {
-        let mut sets = read_poses(poses, topic)?;
-        if sets.len() != 1 {
-            let (file, reason) = (poses.display(), format!("it holds {} sets of poses instead of one", sets.len()));
-            return Err(SimError::Report { file: file.to_string(), reason });
-        }
-        let set = sets.swap_remove(0);
+    /// None, where no source is given.
+    pub(crate) fn read(source: &PoseSource) -> Result<Self, SimError> {
+        let Some(poses) = &source.poses else {
+            return Ok(Self { frame_id: String::new(), poses: Vec::new(), times_s: None });
+        };
+        let mut sets = read_poses(poses, source.topic.as_deref())?;
+        let index = match source.message {
+            Some(index) if index < sets.len() => index,
+            None if sets.len() == 1 => 0,
+            _ => return Err(SimError::PoseSets { file: poses.display().to_string(), sets: sets.len() }),
+        };
+        let set = sets.swap_remove(index);
+        let report = source.report.as_deref();
         let times_s = report.map(read_times).transpose()?;
         Ok(Self { frame_id: set.frame_id, poses: set.poses, times_s })
     }

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use clap::{Parser, ValueEnum};
 use mujoco_sim::{ExecuteOptions, SimError, SimulatedArm, TOOL_SITE, model_file, read_trajectory};
 
-use crate::due::DuePoses;
+use crate::due::{DuePoses, PoseSource};
 use crate::summary::Summary;
 
 #[derive(Parser)]
@@ -30,15 +30,8 @@ struct Arguments {
     /// Site of the model that marks the tool
     #[arg(long, default_value = TOOL_SITE)]
     tool_site: String,
-    /// The poses the trajectory was planned for: CSV, TUM, MCAP file or the folder of a bag
-    #[arg(long, value_name = "FILE|BAG")]
-    poses: Option<PathBuf>,
-    /// Topic of the poses, where the bag has several
-    #[arg(long, requires = "poses")]
-    topic: Option<String>,
-    /// The plan's report (JSON), which says when each pose is due
-    #[arg(long, value_name = "REPORT.json", requires = "poses")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    poses: PoseSource,
     /// How long the run goes on after the trajectory's end, in s
     #[arg(long, default_value_t = ExecuteOptions::default().settle_s, allow_negative_numbers = true)]
     settle: f64,
@@ -79,10 +72,7 @@ fn run(arguments: &Arguments) -> Result<(), SimError> {
         return Err(SimError::Write { file: path.display().to_string(), reason });
     }
     let trajectory = read_trajectory(&arguments.trajectory)?;
-    let due = match &arguments.poses {
-        Some(poses) => DuePoses::read(poses, arguments.topic.as_deref(), arguments.report.as_deref())?,
-        None => DuePoses::none(),
-    };
+    let due = DuePoses::read(&arguments.poses)?;
     let mut arm = SimulatedArm::load(model_file(&arguments.robot)?, &arguments.tool_site)?;
     let options = ExecuteOptions { settle_s: arguments.settle, ..ExecuteOptions::default() };
     let execution = arm.execute(&trajectory, &options)?;

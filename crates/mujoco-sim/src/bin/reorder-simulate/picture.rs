@@ -134,8 +134,12 @@ fn curves(panel: &Area, execution: &Execution, what: &str, value: impl Fn(&Sampl
         .x_label_area_size(35)
         .y_label_area_size(60)
         .build_cartesian_2d(0.0..end, -most..most)?;
-    let exponent = |value: &f64| if most < 0.1 { format!("{value:.0e}") } else { format!("{value:.1}") };
-    chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("t / s").y_label_formatter(&exponent).draw()?;
+    let number = |value: &f64| match value.abs() {
+        size if size < 1e-9 * most => "0".to_owned(),
+        _ if most < 0.1 => format!("{value:.0e}"),
+        _ => format!("{value:.1}"),
+    };
+    chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("t / s").y_label_formatter(&number).draw()?;
     for (joint, tracking) in execution.joints.iter().enumerate() {
         let colour = Palette99::pick(joint).to_rgba();
         let line = LineSeries::new(samples.iter().map(|sample| (sample.time_s, value(sample, joint))), colour);
