@@ -7,7 +7,7 @@ use planner::manipulator::{JointTrajectory, Robot};
 use planner::se3_geom::Pose;
 use planner::{Config, Plan, Request, plan};
 
-const HOME: [f64; 6] = [-1.5708, -1.5708, 1.5708, -1.5708, -1.5708, 0.0];
+const HOME: [f64; 6] = [-1.57, -1.57, 1.57, -1.57, -1.57, 0.0];
 
 /// What the demo promises of every shape.
 const TRACKING_RAD: f64 = 0.01;

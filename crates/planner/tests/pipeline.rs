@@ -7,7 +7,7 @@ use planner::reorder::{Topology, Verdict};
 use planner::se3_geom::{LieGroup, Manifold, Pose, So3, So3Group};
 use planner::{Config, Plan, Refusal, Request, plan};
 
-const HOME: [f64; 6] = [-1.5708, -1.5708, 1.5708, -1.5708, -1.5708, 0.0];
+const HOME: [f64; 6] = [-1.57, -1.57, 1.57, -1.57, -1.57, 0.0];
 
 struct Recording {
     poses: Vec<Pose>,

@@ -6,7 +6,7 @@ use planner::manipulator::nalgebra::DVector;
 use planner::se3_geom::xyzw_from_rotation;
 use planner::{Config, Input, Job, Outcome, Output, RawPose, Refusal, Report, Session};
 
-const HOME: [f64; 6] = [-1.5708, -1.5708, 1.5708, -1.5708, -1.5708, 0.0];
+const HOME: [f64; 6] = [-1.57, -1.57, 1.57, -1.57, -1.57, 0.0];
 
 fn session() -> Session {
     Session::new(Robot::shipped("ur5e").unwrap(), Config::default())

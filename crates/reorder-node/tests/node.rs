@@ -1,5 +1,5 @@
 //! The node as the rest of a ROS 2 system sees it: rclpy processes publish to it, listen to it, call it and stop it.
-#![allow(clippy::unwrap_used, missing_docs)]
+#![allow(clippy::unwrap_used, clippy::approx_constant, missing_docs)]
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
