@@ -3,6 +3,21 @@
 //! [`plan`] is the pipeline as one pure function: poses, robot, start state and configuration in; ordered poses, spline, joint
 //! trajectory and audit out, or a named [`Refusal`]. [`Session`] is the state machine around it that a node or a test drives:
 //! inputs in, outputs out, no clock, file, thread or ROS inside, so that a transcript repeats bit for bit.
+//!
+//! ```
+//! use planner::{Config, Request, manipulator::Robot, plan, pose_bag::read_poses};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let bag = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/lasa_sine");
+//! let robot = Robot::shipped("ur5e")?;
+//! let poses = read_poses(bag, None)?.remove(0).poses; // in any order
+//! let request = Request { poses, ..Request::default() };
+//! let plan = plan(&robot, &Config::default(), &request)?; // or a refusal that says why
+//! println!("{:?}: {:?}", plan.ordering.verdict, plan.ordering.order);
+//! println!("{:?} of the limits", plan.audit.max_ratio);
+//! let [position, velocity, acceleration, jerk] = plan.trajectory.at(0.5 * plan.trajectory.duration_s());
+//! # assert!(position.iter().chain(&velocity).chain(&acceleration).chain(&jerk).all(|x| x.is_finite()));
+//! # Ok(()) }
+//! ```
 
 mod config;
 mod message;

@@ -4,6 +4,7 @@ mod failure;
 mod order;
 mod output;
 mod plan;
+mod simulate;
 mod source;
 
 use std::process::ExitCode;
@@ -23,12 +24,16 @@ enum Command {
     Order(order::Arguments),
     /// Plan an audited joint trajectory through unordered poses
     Plan(plan::Arguments),
+    /// Execute a planned trajectory in MuJoCo (by the program reorder-simulate, which needs MuJoCo; see its --help)
+    #[command(disable_help_flag = true)]
+    Simulate(simulate::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Order(arguments) => order::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -56,9 +56,9 @@ fn of_gap<M: Manifold>(curve: &Curve<M>, gaps: &[f64], repeated: &[bool], k: usi
         reasons
             .push(format!("the median of the gaps around is {times:.1} times this gap: the curve may come back here"));
     }
-    if gaps[k] >= curve.manifold.injectivity_radius() || curve.log(k, (k + 1) % curve.len()).is_none() {
+    if curve.log(k, (k + 1) % curve.len()).is_none() {
         reasons
-            .push("the gap reaches the injectivity radius, where the shortest way is not unique any more".to_owned());
+            .push("the points lie on each other's cut locus: the shortest way between them is not unique".to_owned());
     }
     if at.iter().all(|&row| repeated[row]) {
         reasons.push("both points occur more than once: the curve may pass here twice".to_owned());
@@ -70,11 +70,10 @@ fn of_vertex<M: Manifold>(curve: &Curve<M>, found: &Sweep, k: usize) -> Vec<Doub
     let row = curve.rows[k];
     let turn = curve.previous(k).zip(curve.next(k)).and_then(|(a, b)| {
         let why = match curve.cosine(k, a, b) {
-            None => format!("a neighbour of point {row} lies on its cut locus, so that the way to it is not unique"),
             Some(cosine) if cosine >= 0.0 => {
                 format!("the order turns by {:.0} degrees at point {row}", 180.0 - cosine.min(1.0).acos().to_degrees())
             }
-            Some(_) => return None,
+            _ => return None,
         };
         Some(Doubt { at: curve.rows_at(a, b), why })
     });

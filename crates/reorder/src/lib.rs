@@ -28,7 +28,7 @@
 //!   its other neighbour and on the same side; past an open end, nearer than twice the longest of the five last gaps;
 //! - the sampling parameter ε at a point, from its gaps and its smallest tangent ball through another sample, is above 0.72;
 //! - both ends come near each other, but do not clearly meet;
-//! - a gap reaches the injectivity radius;
+//! - two neighbours lie on each other's cut locus;
 //! - two neighbours both occur more than once;
 //! - for poses: the order changes when a radian counts for half or for twice as many metres.
 //!

@@ -128,7 +128,7 @@ fn a_stretch_of_points_that_all_come_twice_is_doubted() {
 fn half_a_turn_between_neighbours_is_doubted() {
     let turned = |angle: f64| UnitQuaternion::from_scaled_axis(Vector3::x() * angle);
     let found = order(&So3, &[turned(0.0), turned(std::f64::consts::PI)], &Options::default()).unwrap();
-    assert!(doubted(&found, [0, 1], "injectivity radius"), "{}", reasons(&found));
+    assert!(doubted(&found, [0, 1], "cut locus"), "{}", reasons(&found));
     assert_eq!(found.certificate.injectivity_radius, Some(std::f64::consts::PI));
     assert!(found.certificate.margin.unwrap().abs() < 1e-15);
 }
@@ -169,29 +169,58 @@ fn the_reach_sees_strands_that_pass_each_other() {
     assert!((found.certificate.reach.unwrap() / 0.05 - 1.0).abs() < 0.02, "{:?}", found.certificate);
 }
 
+/// Two passes over one line of steps of 0.01, the second 0.3 aside in the other part of the pose, with half a circle between.
+fn two_passes(pose: impl Fn(f64, f64) -> Pose) -> Vec<Pose> {
+    let out = (0..=30).map(|k| (0.01 * f64::from(k), 0.0));
+    let bend = (1..12).map(|k| (TAU * f64::from(k) / 24.0).sin_cos()).map(|(s, c)| (0.3 + 0.03 * s, 0.15 * (1.0 - c)));
+    let back = (0..=30).map(|k| (0.3 - 0.01 * f64::from(k), 0.3));
+    out.chain(bend).chain(back).map(|(along, aside)| pose(along, aside)).collect()
+}
+
+fn at(position_m: f64, angle_rad: f64) -> Pose {
+    let rotation = UnitQuaternion::from_scaled_axis(Vector3::z() * angle_rad);
+    Pose::from_parts((Vector3::x() * position_m).into(), rotation)
+}
+
 #[test]
 fn an_order_that_hangs_on_the_weight_is_ambiguous() {
-    // Two passes over one line of positions, the second turned by 0.3 rad: at a small scale the passes fall together.
-    let pass = |k: u32, angle: f64| {
-        Pose::from_parts(
-            Vector3::new(0.01 * f64::from(k), 0.0, 0.0).into(),
-            UnitQuaternion::from_scaled_axis(Vector3::z() * angle),
-        )
+    // Passes along a line, told apart by angle: at 0.05 m/rad they are 0.015 m apart, at half of it nearer than the steps.
+    let along_line = two_passes(|along, aside| at(along, aside));
+    // Passes along a rotation, told apart by position: the same with the weight inverted.
+    let along_turn = two_passes(|along, aside| at(aside, along));
+    for (poses, safe, risky, change) in [(along_line, 0.2, 0.05, "with half"), (along_turn, 5.0, 20.0, "with twice")] {
+        let found = order_poses(&poses, safe, &Options::default()).unwrap();
+        assert_eq!((found.weight_stable, found.verdict), (Some(true), Verdict::Plausible), "{}", reasons(&found));
+        assert_eq!(found.order, (0..poses.len()).collect::<Vec<_>>());
+        let found = order_poses(&poses, risky, &Options::default()).unwrap();
+        assert_eq!((found.weight_stable, found.verdict), (Some(false), Verdict::Ambiguous));
+        assert!(found.doubts.iter().any(|d| d.why.contains(change)), "{}", reasons(&found));
+        assert_eq!(found.metres_per_radian, Some(risky));
+    }
+}
+
+/// The figure of a 6 that does not quite close: its end points at an earlier stretch, `short_of` steps away from it.
+#[test]
+fn an_end_that_points_at_another_stretch_is_doubted() {
+    let six = |short_of: f64| {
+        let mut points = vec![(0.0, -10.0)];
+        let mut heading: f64 = 0.0;
+        let bends = [(20, 0.0), (12, 180.0), (6, 0.0), (6, 90.0)];
+        for turn in bends.iter().flat_map(|&(steps, degrees)| (0..steps).map(move |_| degrees / f64::from(steps))) {
+            heading += turn.to_radians();
+            let (x, y) = points[points.len() - 1];
+            points.push((x + heading.sin(), y + heading.cos()));
+        }
+        let (x, y) = points[points.len() - 1];
+        let steps = (x - short_of).round();
+        points.extend((1..=steps as u32).map(|k| (x - (x - short_of) * f64::from(k) / steps, y)));
+        in_plane(&points)
     };
-    let bend = (1..12).map(|k| (TAU * f64::from(k) / 24.0).sin_cos()).map(|(s, c)| {
-        let position = Vector3::new(0.3 + 0.03 * s, 0.0, 0.0);
-        Pose::from_parts(position.into(), UnitQuaternion::from_scaled_axis(Vector3::z() * (0.15 * (1.0 - c))))
-    });
-    let poses: Vec<Pose> =
-        (0..=30).map(|k| pass(k, 0.0)).chain(bend).chain((0..=30).rev().map(|k| pass(k, 0.3))).collect();
-    let heavy = order_poses(&poses, 0.2, &Options::default()).unwrap();
-    assert_eq!((heavy.weight_stable, heavy.verdict), (Some(true), Verdict::Plausible), "{}", reasons(&heavy));
-    assert_eq!(heavy.order, (0..poses.len()).collect::<Vec<_>>());
-    // At 0.05 the passes are 0.015 apart, at half of it 0.0075: nearer than the steps of 0.01.
-    let light = order_poses(&poses, 0.05, &Options::default()).unwrap();
-    assert_eq!((light.weight_stable, light.verdict), (Some(false), Verdict::Ambiguous));
-    assert!(light.doubts.iter().any(|d| d.why.contains("with half")), "{}", reasons(&light));
-    assert_eq!(light.metres_per_radian, Some(0.05));
+    let (near, far) = (six(1.6), six(2.6));
+    assert_eq!(far.verdict, Verdict::Plausible, "{}", reasons(&far));
+    assert_eq!(near.order, (0..near.n).collect::<Vec<_>>());
+    assert!(near.doubts.iter().all(|d| d.why.contains("as near")), "{}", reasons(&near));
+    assert_eq!((near.verdict, near.doubts[0].at[0]), (Verdict::Ambiguous, near.n - 1));
 }
 
 /// Random closed curves of three harmonics, sparse and uneven on purpose: most orders are wrong, and none of those may be believed.
