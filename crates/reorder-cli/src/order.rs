@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use planner::reorder::{Options, OrderError, Ordering, TopologyChoice, order, order_poses};
-use planner::se3_geom::{R2, R3, So3, xyzw_from_rotation};
+use planner::se3_geom::{Pose, R2, R3, So3, xyzw_from_rotation};
 
 use crate::failure::Failure;
 use crate::output::print;
@@ -92,18 +92,18 @@ fn order_points(arguments: &Arguments, points: &Points) -> Result<Ordering, Orde
 }
 
 fn csv(points: &Points, order: &[usize]) -> String {
-    let (header, row): (&str, Box<dyn Fn(usize) -> Vec<f64> + '_>) = match points {
-        Points::Plane(p) => ("x,y", Box::new(|i| p[i].as_slice().to_vec())),
-        Points::Space(p) => ("x,y,z", Box::new(|i| p[i].as_slice().to_vec())),
-        Points::Rotations(r) => ("qx,qy,qz,qw", Box::new(|i| xyzw_from_rotation(&r[i]).to_vec())),
-        Points::Poses(p) => (
-            "x,y,z,qx,qy,qz,qw",
-            Box::new(|i| [p[i].translation.vector.as_slice(), &xyzw_from_rotation(&p[i].rotation)].concat()),
-        ),
+    let (header, rows): (&str, Vec<Vec<f64>>) = match points {
+        Points::Plane(p) => ("x,y", p.iter().map(|p| p.as_slice().to_vec()).collect()),
+        Points::Space(p) => ("x,y,z", p.iter().map(|p| p.as_slice().to_vec()).collect()),
+        Points::Rotations(r) => ("qx,qy,qz,qw", r.iter().map(|r| xyzw_from_rotation(r).to_vec()).collect()),
+        Points::Poses(p) => {
+            let row = |p: &Pose| [p.translation.vector.as_slice(), &xyzw_from_rotation(&p.rotation)].concat();
+            ("x,y,z,qx,qy,qz,qw", p.iter().map(row).collect())
+        }
     };
     let mut text = format!("{header}\n");
     for &i in order {
-        let fields: Vec<String> = row(i).iter().map(f64::to_string).collect();
+        let fields: Vec<String> = rows[i].iter().map(f64::to_string).collect();
         text += &(fields.join(",") + "\n");
     }
     text
