@@ -70,8 +70,10 @@ enum Format {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let points = arguments.source.points(arguments.manifold)?;
-    let ordering = order_points(arguments, &points)
+    let mut ordering = order_points(arguments, &points)
         .map_err(|error| Failure::BadInput(format!("{}: {error}", arguments.source.input.display())))?;
+    // Without rotations and translations to weigh against each other, there is no weight that the order could hang on.
+    ordering.weight_stable.get_or_insert(true);
     print(&match arguments.format {
         Format::Json => serde_json::to_string(&ordering).map_err(Failure::bad_input)? + "\n",
         Format::Indices => ordering.order.iter().map(|row| format!("{row}\n")).collect(),

@@ -82,7 +82,8 @@ pub struct Certificate {
     pub epsilon: Option<f64>,
     /// Radius within which geodesics are unique; `None` where it is infinite.
     pub injectivity_radius: Option<f64>,
-    /// injectivity_radius − max_gap; `None` where that is infinite.
+    /// injectivity_radius − max_gap; `None` where that is infinite. Positive is what the theorems ask for. On SE(3) a gap that is
+    /// long in position alone makes it negative without making any geodesic ambiguous, so that this alone is no doubt.
     pub margin: Option<f64>,
 }
 

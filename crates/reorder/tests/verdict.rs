@@ -185,7 +185,7 @@ fn at(position_m: f64, angle_rad: f64) -> Pose {
 #[test]
 fn an_order_that_hangs_on_the_weight_is_ambiguous() {
     // Passes along a line, told apart by angle: at 0.05 m/rad they are 0.015 m apart, at half of it nearer than the steps.
-    let along_line = two_passes(|along, aside| at(along, aside));
+    let along_line = two_passes(at);
     // Passes along a rotation, told apart by position: the same with the weight inverted.
     let along_turn = two_passes(|along, aside| at(aside, along));
     for (poses, safe, risky, change) in [(along_line, 0.2, 0.05, "with half"), (along_turn, 5.0, 20.0, "with twice")] {

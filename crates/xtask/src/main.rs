@@ -7,6 +7,7 @@ mod mujoco;
 mod python;
 mod ros;
 mod setup;
+mod soak;
 mod test;
 
 use clap::Parser;
@@ -20,6 +21,13 @@ enum Chore {
     Setup,
     /// Set up, build, and run the main job for real: recorded poses, ROS 2, the node, MuJoCo
     Demo,
+    /// Run a long test at full length and print its figures
+    Soak {
+        name: soak::Soak,
+        /// How many random cases
+        #[arg(default_value_t = 1000)]
+        cases: u32,
+    },
     /// Set up, then run clippy and rustdoc over the workspace with warnings as errors
     Lint,
     /// Set up, then run every test there is
@@ -31,6 +39,7 @@ fn main() -> ExitCode {
     let outcome = match Chore::parse() {
         Chore::Setup => setup::run(&layout),
         Chore::Demo => demo::run(&layout),
+        Chore::Soak { name, cases } => soak::run(&layout, name, cases),
         Chore::Lint => test::lint(&layout),
         Chore::Test => test::test(&layout),
     };
