@@ -26,6 +26,9 @@ impl<const N: usize> Manifold for Euclidean<N> {
     fn inner(&self, _: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
         u.dot(&v)
     }
+    fn transport(&self, _: &Self::Point, _: Self::Tangent, v: Self::Tangent) -> Self::Tangent {
+        v
+    }
     fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
         (q - p).norm()
     }

@@ -32,25 +32,50 @@
 
 mod angle_series;
 mod block_tridiagonal;
+mod chart_functions;
+mod curve;
 mod euclidean;
+mod geodesic_flow;
+mod geodesic_search;
 mod group;
+mod level_set;
 mod manifold;
+mod monge;
+mod nearest_rotation;
+mod planar_twist;
 mod pose;
 mod pose_spline;
 mod rotation_segment;
+mod se2;
 mod se3;
+mod sim2;
+mod so2;
 mod so3;
+mod spline_error;
+mod sphere;
 mod spline_rates;
 mod twist;
 
-pub use euclidean::{Euclidean, R2, R3};
-pub use group::{LieGroup, Se3Group, So3Group};
-pub use manifold::{CutLocus, Manifold, Tangent};
-pub use nalgebra;
-pub use pose::{InvalidPose, Pose, UNIT_QUATERNION_TOLERANCE, pose_from_xyzw, rotation_from_xyzw, xyzw_from_rotation};
-pub use pose_spline::{
-    Ends, HALF_TURN_MARGIN_RAD, Motion, PoseSpline, SplineError, WINDING_BOUND_RAD, centripetal_knots,
+pub use curve::{
+    ArcLengthError, Bezier, ByArcLength, CubicEnds, CubicSpline, Curve, Derivatives, Geodesic, Jet, JetSpace,
+    Parameterisation, PartialGeodesic, PoseJet, Screw, arc_length, centripetal_knots, curvature,
 };
+pub use euclidean::{Euclidean, R2, R3};
+pub use geodesic_search::GeodesicError;
+pub use group::{LieGroup, NoLogarithm, Se2Group, Se3Group, Sim2Group, So2Group, So3Group};
+pub use level_set::{Constraint, LevelSet, UnitSegments};
+pub use manifold::{CutLocus, Manifold, Tangent};
+pub use monge::{HeightJet, MongePatch};
+pub use nalgebra;
+pub use nearest_rotation::{NearestRotationError, nearest_rotation};
+pub use planar_twist::{PlanarTwist, SimilarityTwist};
+pub use pose::{InvalidPose, Pose, UNIT_QUATERNION_TOLERANCE, pose_from_xyzw, rotation_from_xyzw, xyzw_from_rotation};
+pub use pose_spline::{Ends, HALF_TURN_MARGIN_RAD, Motion, PoseSpline, WINDING_BOUND_RAD};
+pub use se2::Se2;
 pub use se3::Se3;
+pub use sim2::Sim2;
+pub use so2::So2;
 pub use so3::So3;
+pub use sphere::Sphere;
+pub use spline_error::SplineError;
 pub use twist::Twist;

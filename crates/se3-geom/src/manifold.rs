@@ -10,12 +10,13 @@ pub trait Tangent:
 impl<T> Tangent for T where T: Copy + Add<Output = T> + Sub<Output = T> + Neg<Output = T> + Mul<f64, Output = T> {}
 
 /// Two points between which the shortest geodesic is not unique, so that no logarithm exists.
+///
+/// Spaces whose logarithm is solved numerically ([`MongePatch`](crate::MongePatch), [`LevelSet`](crate::LevelSet)) return it
+/// too where the solver found no geodesic; their `try_log` methods tell the two apart.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error(
-    "the points lie on each other's cut locus (distance {distance}): the shortest geodesic between them is not unique"
-)]
+#[error("no unique shortest geodesic joins the two points: they lie on each other's cut locus (distance {distance})")]
 pub struct CutLocus {
-    /// Geodesic distance of the two points.
+    /// Geodesic distance of the two points; NaN where no geodesic was found.
     pub distance: f64,
 }
 
@@ -39,6 +40,11 @@ pub trait Manifold {
 
     /// Inner product of two tangent vectors at `p`.
     fn inner(&self, p: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64;
+
+    /// v carried from `p` to exp(p, along) by parallel transport along that geodesic: DV/dt = 0 (thesis eq. 3.8).
+    ///
+    /// Transport keeps inner products, is linear in v, and carries the velocity `along` itself to the velocity on arrival.
+    fn transport(&self, p: &Self::Point, along: Self::Tangent, v: Self::Tangent) -> Self::Tangent;
 
     /// Geodesic distance. Total: defined on the cut locus too.
     fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64;

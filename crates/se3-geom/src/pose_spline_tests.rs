@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Se3, pose_from_xyzw};
+use crate::{Se3, centripetal_knots, pose_from_xyzw};
 use nalgebra::UnitQuaternion;
 
 fn pose(p: [f64; 3], rotation_vector: [f64; 3]) -> Pose {

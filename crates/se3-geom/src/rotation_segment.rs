@@ -6,7 +6,8 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use crate::angle_series::AngleSeries;
+use crate::chart_functions::ChartFunctions;
+use crate::curve::Cubic;
 use crate::group::{LieGroup, So3Group};
 
 /// Rotation with body rate ω, ω̇ and ω̈.
@@ -17,47 +18,46 @@ pub(crate) struct RotationMotion {
     pub(crate) jerk: Vector3<f64>,
 }
 
-/// A cubic c₀ + c₁τ + c₂τ² + c₃τ³ of a 3-vector.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Cubic([Vector3<f64>; 4]);
-
-impl Cubic {
-    /// The cubic on \[0, h\] with the given end values and end slopes.
-    pub(crate) fn hermite(h: f64, [x0, x1]: [Vector3<f64>; 2], [v0, v1]: [Vector3<f64>; 2]) -> Self {
-        let slope = (x1 - x0) / h;
-        Self([x0, v0, (slope * 3.0 - v0 * 2.0 - v1) / h, (v0 + v1 - slope * 2.0) / (h * h)])
-    }
-
-    /// Value and the first three derivatives.
-    pub(crate) fn at(&self, t: f64) -> [Vector3<f64>; 4] {
-        let [a, b, c, d] = self.0;
-        [a + (b + (c + d * t) * t) * t, b + (c * 2.0 + d * (3.0 * t)) * t, c * 2.0 + d * (6.0 * t), d * 6.0]
-    }
-}
-
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RotationSegment {
     midpoint: UnitQuaternion<f64>,
-    chart: Cubic,
+    chart: Cubic<3>,
 }
 
 impl RotationSegment {
-    /// The segment of length `h` from `start` over the rotation vector `theta` with body rates at both ends.
-    pub(crate) fn new(start: &UnitQuaternion<f64>, theta: Vector3<f64>, h: f64, rates: [Vector3<f64>; 2]) -> Self {
+    /// The segment of length `h` from `start` over the rotation vector `theta`, with the second derivatives of its chart
+    /// coordinates at both ends.
+    pub(crate) fn new(start: &UnitQuaternion<f64>, theta: Vector3<f64>, h: f64, bends: [Vector3<f64>; 2]) -> Self {
         let half = theta * 0.5;
-        let slopes =
-            [So3Group::right_jacobian_inverse(-half) * rates[0], So3Group::right_jacobian_inverse(half) * rates[1]];
-        Self { midpoint: start * So3Group::exp(half), chart: Cubic::hermite(h, [-half, half], slopes) }
+        Self { midpoint: start * So3Group::exp(half), chart: Cubic::bent(h, [-half, half], bends) }
     }
 
     pub(crate) fn rotation(&self, t: f64) -> UnitQuaternion<f64> {
-        self.midpoint * So3Group::exp(self.chart.at(t)[0])
+        self.midpoint * So3Group::exp(self.chart.value(t))
+    }
+
+    /// The angle ∫‖ω‖dt turned through on \[0, h\] where that may exceed `most`, by the midpoint rule: sixteen points measure
+    /// to a few per cent. Mostly the chart tells that it does not, for ‖ω‖ ≤ ‖φ̇‖.
+    pub(crate) fn turned_beyond(&self, h: f64, most: f64) -> Option<f64> {
+        const POINTS: usize = 16;
+        if self.chart.length_bound(h) <= most {
+            return None;
+        }
+        let step = h / POINTS as f64;
+        let rate = |t: f64| {
+            let [phi, p, ..] = self.chart.at(t);
+            So3Group::right_jacobian(phi) * p
+        };
+        let turned = (0..POINTS).map(|k| rate((k as f64 + 0.5) * step).norm() * step).sum();
+        // Not `turned > most`: refuses what is not a number, too.
+        if turned <= most { None } else { Some(turned) }
     }
 
     /// ω = φ̇ − b φ×φ̇ + c φ×(φ×φ̇) and its first two derivatives.
+    #[inline]
     pub(crate) fn at(&self, t: f64) -> RotationMotion {
         let [phi, p, q, r] = self.chart.at(t);
-        let s = AngleSeries::at_squared_angle(phi.norm_squared());
+        let s = ChartFunctions::at(&phi);
         // u = φ×φ̇ and w = φ×u with their derivatives.
         let u = phi.cross(&p);
         let u_dot = phi.cross(&q);
@@ -72,7 +72,7 @@ impl RotationSegment {
         let b_ddot = s.b_ss * half_x_dot * half_x_dot + s.b_s * half_x_ddot;
         let c_ddot = s.c_ss * half_x_dot * half_x_dot + s.c_s * half_x_ddot;
         RotationMotion {
-            rotation: self.midpoint * So3Group::exp(phi),
+            rotation: self.midpoint * s.rotation,
             rate: p - u * s.b + w * s.c,
             acceleration: q - u * b_dot - u_dot * s.b + w * c_dot + w_dot * s.c,
             jerk: r - u * b_ddot - u_dot * (2.0 * b_dot) - u_ddot * s.b
@@ -83,20 +83,127 @@ impl RotationSegment {
     }
 }
 
-/// The part of the body acceleration at a segment's end that is quadratic in the body rate ω there, and its derivative by ω.
+/// The part of the body acceleration at a segment's ends that is quadratic in the body rate there.
 ///
-/// `phi` is the chart coordinate of that end: +θ/2 at the right, −θ/2 at the left. With p = φ̇ = Jr⁻¹(φ)ω,
-/// N = J̇r·φ̇ = −b_s(φ·p)(φ×p) + c_s(φ·p) φ×(φ×p) + c p×(φ×p).
-pub(crate) fn quadratic_acceleration(rate: &Vector3<f64>, phi: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
-    let s = AngleSeries::at_squared_angle(phi.norm_squared());
-    let chart_from_rate = So3Group::right_jacobian_inverse(*phi);
-    let p = chart_from_rate * rate;
-    let (along, u) = (phi.dot(&p), phi.cross(&p));
-    let w = phi.cross(&u);
-    let value = u * (-s.b_s * along) + w * (s.c_s * along) + p.cross(&u) * s.c;
-    let phi_hat = phi.cross_matrix();
-    let by_p = (u * phi.transpose() + phi_hat * along) * -s.b_s
-        + (w * phi.transpose() + phi_hat * phi_hat * along) * s.c_s
-        + (p.cross_matrix() * phi_hat - u.cross_matrix()) * s.c;
-    (value, by_p * chart_from_rate)
+/// `half_turn` φ is the chart coordinate of the right end, −φ that of the left. With p = φ̇ = Jr⁻¹(φ)ω and s = φ·ω = φ·p,
+/// N(ω; φ) = J̇r·φ̇ = −b_s·s φ×p + (c_s·s² + c·p·p) φ − s(c + c_s·φ·φ) p.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct QuadraticAcceleration {
+    half_turn: Vector3<f64>,
+    chart_from_rate: Matrix3<f64>,
+    c: f64,
+    b_s: f64,
+    c_s: f64,
+    along_rate: f64,
+}
+
+impl QuadraticAcceleration {
+    pub(crate) fn new(theta: &Vector3<f64>) -> Self {
+        let half_turn = theta * 0.5;
+        let ChartFunctions { c, b_s, c_s, .. } = ChartFunctions::at(&half_turn);
+        Self {
+            half_turn,
+            chart_from_rate: So3Group::right_jacobian_inverse(half_turn),
+            c,
+            b_s,
+            c_s,
+            along_rate: c + c_s * half_turn.norm_squared(),
+        }
+    }
+
+    /// N at the right end, with the factor with which it enters the equations there, +1.
+    pub(crate) fn right(&self, rate: &Vector3<f64>) -> Vector3<f64> {
+        self.value(&self.half_turn, &(self.chart_from_rate * rate), self.half_turn.dot(rate))
+    }
+
+    /// −N at the left end: it enters the equations there with the factor −1.
+    pub(crate) fn left(&self, rate: &Vector3<f64>) -> Vector3<f64> {
+        let phi = -self.half_turn;
+        -self.value(&phi, &self.chart_from_rate.tr_mul(rate), phi.dot(rate))
+    }
+
+    /// φ̈ at the left end: ω̇ = Jr·φ̈ + N solved for it.
+    pub(crate) fn left_bend(&self, rate: &Vector3<f64>, acceleration: &Vector3<f64>) -> Vector3<f64> {
+        self.chart_from_rate.tr_mul(&(acceleration + self.left(rate)))
+    }
+
+    /// φ̈ at the right end.
+    pub(crate) fn right_bend(&self, rate: &Vector3<f64>, acceleration: &Vector3<f64>) -> Vector3<f64> {
+        self.chart_from_rate * (acceleration - self.right(rate))
+    }
+
+    /// The derivative of [`Self::right`].
+    pub(crate) fn right_by_rate(&self, rate: &Vector3<f64>) -> Matrix3<f64> {
+        let p = self.chart_from_rate * rate;
+        self.by_chart_rate(&self.half_turn, &p, self.half_turn.dot(rate)) * self.chart_from_rate
+    }
+
+    /// The derivative of [`Self::left`]. Jr⁻¹(−φ) is the transpose of Jr⁻¹(φ).
+    pub(crate) fn left_by_rate(&self, rate: &Vector3<f64>) -> Matrix3<f64> {
+        let phi = -self.half_turn;
+        let p = self.chart_from_rate.tr_mul(rate);
+        -(self.by_chart_rate(&phi, &p, phi.dot(rate)) * self.chart_from_rate.transpose())
+    }
+
+    fn value(&self, phi: &Vector3<f64>, p: &Vector3<f64>, s: f64) -> Vector3<f64> {
+        phi * (self.c_s * s * s + self.c * p.norm_squared()) - phi.cross(p) * (self.b_s * s) - p * (s * self.along_rate)
+    }
+
+    fn by_chart_rate(&self, phi: &Vector3<f64>, p: &Vector3<f64>, s: f64) -> Matrix3<f64> {
+        let column = phi.cross(p) * -self.b_s + phi * (2.0 * self.c_s * s) - p * self.along_rate;
+        let (twist, shrink) = (phi * (self.b_s * s), s * self.along_rate);
+        let mut by_p = column * phi.transpose() + phi * (p * (2.0 * self.c)).transpose() - twist.cross_matrix();
+        for k in 0..3 {
+            by_p[(k, k)] -= shrink;
+        }
+        by_p
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// N is what the acceleration of a segment has beyond its linear part, at both ends and at every angle a chart can take.
+    #[test]
+    fn quadratic_part_is_that_of_the_segment() {
+        for angle in [1e-6, 0.4, 1.5, 2.6, 3.1] {
+            let theta = Vector3::new(0.6, -0.48, 0.64) * angle;
+            let (h, rates) = (0.7, [Vector3::new(1.1, -2.0, 0.3), Vector3::new(-0.4, 0.9, 1.7)]);
+            let half = theta * 0.5;
+            let slopes =
+                [So3Group::right_jacobian_inverse(-half) * rates[0], So3Group::right_jacobian_inverse(half) * rates[1]];
+            let chart = Cubic::hermite(h, [-half, half], slopes);
+            let segment = RotationSegment { midpoint: So3Group::exp(half), chart };
+            let n = QuadraticAcceleration::new(&theta);
+            let carry = So3Group::adjoint(&So3Group::exp(theta * 0.5));
+            let start =
+                theta * (6.0 / (h * h)) - rates[0] * (4.0 / h) - carry * rates[1] * (2.0 / h) - n.left(&rates[0]);
+            let end = theta * (-6.0 / (h * h))
+                + rates[1] * (4.0 / h)
+                + carry.transpose() * rates[0] * (2.0 / h)
+                + n.right(&rates[1]);
+            // Terms of size 6θ/h² < 40: a hundred roundings of them.
+            assert!((segment.at(0.0).acceleration - start).norm() < 1e-12, "{angle}");
+            assert!((segment.at(h).acceleration - end).norm() < 1e-12, "{angle}");
+            // And the same segment comes from its accelerations.
+            let bends = [n.left_bend(&rates[0], &start), n.right_bend(&rates[1], &end)];
+            let bent = RotationSegment::new(&UnitQuaternion::identity(), theta, h, bends);
+            assert!((bent.at(0.0).rate - rates[0]).norm() + (bent.at(h).rate - rates[1]).norm() < 1e-12, "{angle}");
+        }
+    }
+
+    /// The derivative against central differences, which are exact for a quadratic up to rounding/step.
+    #[test]
+    fn derivative_is_the_slope() {
+        let n = QuadraticAcceleration::new(&Vector3::new(1.9, -1.1, 1.6));
+        let rate = Vector3::new(0.8, 2.1, -1.3);
+        for k in 0..3 {
+            let step = Vector3::ith(k, 0.5);
+            let right = n.right(&(rate + step)) - n.right(&(rate - step));
+            let left = n.left(&(rate + step)) - n.left(&(rate - step));
+            assert!((right - n.right_by_rate(&rate).column(k)).norm() < 1e-14);
+            assert!((left - n.left_by_rate(&rate).column(k)).norm() < 1e-14);
+        }
+    }
 }

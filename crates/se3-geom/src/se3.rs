@@ -1,5 +1,6 @@
 //! Poses as a Riemannian manifold.
 
+use crate::group::{LieGroup, So3Group};
 use crate::manifold::{CutLocus, Manifold};
 use crate::pose::Pose;
 use crate::so3::So3;
@@ -56,6 +57,14 @@ impl Manifold for Se3 {
     }
     fn inner(&self, _: &Pose, u: Twist, v: Twist) -> f64 {
         self.alpha * u.angular.dot(&v.angular) + self.beta * u.linear.dot(&v.linear)
+    }
+    /// Each factor by itself: the world-frame velocity of the origin stays, seen from a frame that has turned by ω; rates as on
+    /// [`So3`].
+    fn transport(&self, p: &Pose, along: Twist, v: Twist) -> Twist {
+        Twist {
+            linear: So3Group::exp(-along.angular) * v.linear,
+            angular: So3.transport(&p.rotation, along.angular, v.angular),
+        }
     }
     fn distance(&self, p: &Pose, q: &Pose) -> f64 {
         let angle = So3.distance(&p.rotation, &q.rotation);

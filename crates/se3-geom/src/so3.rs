@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::group::{LieGroup, So3Group};
+use crate::group::{LieGroup, So3Group, logarithm};
 use crate::manifold::{CutLocus, Manifold};
 
 /// SO(3) with its bi-invariant metric: the distance of two rotations is the angle between them, in rad.
@@ -21,16 +21,25 @@ impl Manifold for So3 {
         p * So3Group::exp(v)
     }
     fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
-        So3Group::log(&(p.inverse() * q))
+        let (cosine, vector) = relative_quaternion(p, q);
+        // Rounding of the dot product leaves 4 ε in it: within that the side of half a turn is undecided.
+        if cosine < 4.0 * f64::EPSILON {
+            return Err(CutLocus { distance: PI });
+        }
+        logarithm(cosine, vector).map(|log| log.rotation_vector).map_err(|_| CutLocus { distance: f64::NAN })
     }
     fn inner(&self, _: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
         u.dot(&v)
     }
-    /// θ = 4·asin(c/2) with c the smaller chord of p and ±q: exactly symmetric, and accurate down to the smallest angles
-    /// because the chord comes from differences.
+    /// In body coordinates Exp(−ω/2)·v with ω = `along`: the body frame turns by ω, a parallel field by half of it, because
+    /// the metric is bi-invariant.
+    fn transport(&self, _: &Self::Point, along: Self::Tangent, v: Self::Tangent) -> Self::Tangent {
+        So3Group::exp(along * -0.5) * v
+    }
+    /// θ = 2·atan2(sin θ/2, cos θ/2): exactly symmetric, and as accurate at 0 and at π as in between.
     fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
-        let chord = (p.coords - q.coords).norm().min((p.coords + q.coords).norm());
-        4.0 * (0.5 * chord).min(1.0).asin()
+        let (cosine, vector) = relative_quaternion(p, q);
+        2.0 * length(&vector).atan2(cosine)
     }
     fn injectivity_radius(&self) -> f64 {
         PI
@@ -38,4 +47,23 @@ impl Manifold for So3 {
     fn is_finite(&self, p: &Self::Point) -> bool {
         p.coords.iter().all(|x| x.is_finite())
     }
+}
+
+/// Cosine (≥ 0) and vector part of ±p⁻¹q.
+///
+/// The vector part is that of ½(p + q)⁻¹(q − p): the difference of near quaternions is exact, so that nothing is lost near 0,
+/// and swapping p and q flips its sign to the last bit.
+fn relative_quaternion(p: &UnitQuaternion<f64>, q: &UnitQuaternion<f64>) -> (f64, Vector3<f64>) {
+    let cosine = p.coords.dot(&q.coords);
+    // q and −q are the same rotation.
+    let q = if cosine < 0.0 { -q.into_inner() } else { q.into_inner() };
+    let vector = ((p.into_inner() + q).conjugate() * (q - p.into_inner())).imag() * 0.5;
+    (cosine.abs(), vector)
+}
+
+/// ‖v‖, also where its square underflows.
+fn length(v: &Vector3<f64>) -> f64 {
+    let norm = v.norm();
+    let largest = v.amax();
+    if norm > 1e-140 || largest == 0.0 { norm } else { (v / largest).norm() * largest }
 }

@@ -1,17 +1,38 @@
-//! One law suite for every manifold and one for every group.
+//! One law suite for every manifold, one line a manifold.
 //!
-//! Tolerances are multiples of the unit roundoff ε = 2.2e-16 times the size of the numbers involved; `scale` is that size.
+//! Tolerances are multiples of the unit roundoff ε = 2.2e-16 times the size of the numbers involved; `scale` is that size. Where
+//! geodesics are integrated, the flow's 1e-13 a step and the shots' 1e-11 take the place of the roundoff.
 #![allow(clippy::unwrap_used)]
 
-use nalgebra::{Matrix6, UnitQuaternion, Vector3, Vector6};
+mod samples;
+mod surfaces;
+
+use std::cell::Cell;
+
+use nalgebra::{Isometry2, SVector, Similarity2, UnitComplex, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
-use se3_geom::{LieGroup, Manifold, Pose, R3, Se3, Se3Group, So3, So3Group, Twist, nalgebra};
+use samples::{
+    direction, displacement, free, on_patch, on_segments, on_sphere, planar_pose, planar_twist, pose, rotation,
+    rotation_vector, signed_angle, similarity, similarity_twist, twist,
+};
+use se3_geom::{
+    CutLocus, LevelSet, LieGroup, Manifold, Pose, R3, Se2, Se3, Se3Group, Sim2, So2, So3, So3Group, Sphere, nalgebra,
+};
+use surfaces::{egg_box, saddle};
 
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
-fn run<S: Strategy>(strategy: S, test: impl Fn(S::Value)) {
-    let config = Config { cases: 2000, rng_seed: RngSeed::Fixed(11), failure_persistence: None, ..Config::default() };
+/// How many cases a space can afford, and what a number of size 1 may be off by.
+struct Effort {
+    cases: u32,
+    tolerance: f64,
+}
+const CLOSED_FORM: Effort = Effort { cases: 2000, tolerance: ROUNDINGS };
+const INTEGRATED: Effort = Effort { cases: 40, tolerance: 1e-11 };
+
+fn run_cases<S: Strategy>(cases: u32, strategy: S, test: impl Fn(S::Value)) {
+    let config = Config { cases, rng_seed: RngSeed::Fixed(11), failure_persistence: None, ..Config::default() };
     TestRunner::new(config)
         .run(&strategy, |value| {
             test(value);
@@ -20,74 +41,40 @@ fn run<S: Strategy>(strategy: S, test: impl Fn(S::Value)) {
         .unwrap();
 }
 
-/// Angles on both sides of every switch of branch, down to 1e-9 and up to just below π.
-fn angle() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        Just(0.0),
-        (-9.0..0.3_f64).prop_map(|e| 10f64.powf(e)),
-        (0.49..0.51_f64),
-        (1.99..2.01_f64),
-        (1e-9..1e-3_f64).prop_map(|gap| std::f64::consts::PI - gap),
-    ]
-}
-
-fn direction() -> impl Strategy<Value = Vector3<f64>> {
-    prop::array::uniform3(-1.0..1.0_f64)
-        .prop_filter("no direction", |v| Vector3::from(*v).norm() > 0.1)
-        .prop_map(|v| Vector3::from(v).normalize())
-}
-
-fn rotation_vector() -> impl Strategy<Value = Vector3<f64>> {
-    (direction(), angle()).prop_map(|(d, a)| d * a)
-}
-
-/// Displacements from a micrometre to a kilometre.
-fn displacement() -> impl Strategy<Value = Vector3<f64>> {
-    (direction(), -6.0..3.0_f64).prop_map(|(d, e)| d * 10f64.powf(e))
-}
-
-fn rotation() -> impl Strategy<Value = UnitQuaternion<f64>> {
-    rotation_vector().prop_map(So3Group::exp)
-}
-
-fn pose() -> impl Strategy<Value = Pose> {
-    (displacement(), rotation()).prop_map(|(p, r)| Pose::from_parts(p.into(), r))
-}
-
-fn twist() -> impl Strategy<Value = Twist> {
-    (displacement(), rotation_vector()).prop_map(|(v, w)| Twist::new(v, w))
+fn run<S: Strategy>(strategy: S, test: impl Fn(S::Value)) {
+    run_cases(CLOSED_FORM.cases, strategy, test);
 }
 
 /// Laws of a Riemannian manifold. `size` bounds the numbers a point is made of, `gap` measures how far two points are apart
 /// independently of the metric under test.
-fn manifold_laws<M: Manifold, P: Strategy<Value = M::Point>, T: Strategy<Value = M::Tangent>>(
+fn manifold_laws<M: Manifold, S: Strategy<Value = (M::Point, [M::Tangent; 3])>>(
+    Effort { cases, tolerance }: Effort,
     m: &M,
-    point: impl Fn() -> P,
-    tangent: impl Fn() -> T,
+    sample: impl Fn() -> S,
     size: impl Fn(&M::Point) -> f64,
     gap: impl Fn(&M::Point, &M::Point) -> f64,
 ) {
-    run((point(), tangent()), |(p, v)| {
+    run_cases(cases, sample(), |(p, [v, ..])| {
         let q = m.exp(&p, v);
         let scale = 1.0 + size(&p) + size(&q);
         // exp and log are inverse, and the distance is the length of the logarithm. Half a turn less 1e-9 loses no digits.
         let back = m.log(&p, &q).unwrap();
-        assert!(m.norm(&p, back - v) < ROUNDINGS * scale, "log(exp) {p:?} {v:?} {back:?}");
-        assert!((m.distance(&p, &q) - m.norm(&p, v)).abs() < ROUNDINGS * scale, "distance {p:?} {v:?}");
-        assert!(gap(&m.exp(&p, back), &q) < ROUNDINGS * scale, "exp(log) {p:?} {v:?}");
+        assert!(m.norm(&p, back - v) < tolerance * scale, "log(exp) {p:?} {v:?} {back:?}");
+        assert!((m.distance(&p, &q) - m.norm(&p, v)).abs() < tolerance * scale, "distance {p:?} {v:?}");
+        assert!(gap(&m.exp(&p, back), &q) < tolerance * scale, "exp(log) {p:?} {v:?}");
         // The geodesic starts at p, ends at q, and its middle is half way: a wrong sign of v would fail here.
-        assert!(gap(&m.geodesic(&p, &q, 0.0).unwrap(), &p) < ROUNDINGS * scale);
-        assert!(gap(&m.geodesic(&p, &q, 1.0).unwrap(), &q) < ROUNDINGS * scale);
+        assert!(gap(&m.geodesic(&p, &q, 0.0).unwrap(), &p) < tolerance * scale);
+        assert!(gap(&m.geodesic(&p, &q, 1.0).unwrap(), &q) < tolerance * scale);
         let middle = m.geodesic(&p, &q, 0.5).unwrap();
         let half = 0.5 * m.norm(&p, v);
-        assert!((m.distance(&p, &middle) - half).abs() < ROUNDINGS * scale);
-        assert!((m.distance(&middle, &q) - half).abs() < ROUNDINGS * scale);
+        assert!((m.distance(&p, &middle) - half).abs() < tolerance * scale);
+        assert!((m.distance(&middle, &q) - half).abs() < tolerance * scale);
         // Bilinear and positive.
         let k = 0.37;
         assert!((m.inner(&p, v * k, v) - k * m.inner(&p, v, v)).abs() <= ROUNDINGS * m.inner(&p, v, v));
         assert!(m.inner(&p, v, -v) <= 0.0);
     });
-    run((point(), point(), point()), |(a, b, c)| {
+    run_cases(cases, (sample(), sample(), sample()), |((a, _), (b, _), (c, _))| {
         let scale = 1.0 + size(&a) + size(&b) + size(&c);
         assert_eq!(
             m.distance(&a, &b),
@@ -95,13 +82,80 @@ fn manifold_laws<M: Manifold, P: Strategy<Value = M::Point>, T: Strategy<Value =
             "symmetric to the last bit, so that edge weights do not depend on direction"
         );
         assert_eq!(m.distance(&a, &a), 0.0);
-        assert!(m.distance(&a, &c) <= m.distance(&a, &b) + m.distance(&b, &c) + ROUNDINGS * scale, "triangle");
+        assert!(m.distance(&a, &c) <= m.distance(&a, &b) + m.distance(&b, &c) + tolerance * scale, "triangle");
     });
+    transport_laws(Effort { cases, tolerance }, m, sample, size, gap);
+}
+
+fn transport_laws<M: Manifold, S: Strategy<Value = (M::Point, [M::Tangent; 3])>>(
+    Effort { cases, tolerance }: Effort,
+    m: &M,
+    sample: impl Fn() -> S,
+    size: impl Fn(&M::Point) -> f64,
+    gap: impl Fn(&M::Point, &M::Point) -> f64,
+) {
+    run_cases(cases, sample(), |(p, [along, u, v])| {
+        let q = m.exp(&p, along);
+        let carry = |v| m.transport(&p, along, v);
+        let sizes = m.norm(&p, u) + m.norm(&p, v);
+        let scale = 1.0 + size(&p) + size(&q);
+        let isometry_gap = (m.inner(&q, carry(u), carry(v)) - m.inner(&p, u, v)).abs();
+        assert!(isometry_gap <= tolerance * scale * sizes * sizes, "isometry {p:?} {along:?}");
+        let linear_gap = m.norm(&q, carry(u * 0.7 - v * 1.3) - (carry(u) * 0.7 - carry(v) * 1.3));
+        assert!(linear_gap <= tolerance * scale * sizes, "linear {p:?} {along:?}");
+        let returned = m.transport(&q, -carry(along), carry(v));
+        assert!(m.norm(&p, returned - v) <= tolerance * scale * sizes, "inverse {p:?} {along:?}");
+        // What is carried along itself is the velocity on arrival: from there the geodesic goes on.
+        let onward = m.exp(&q, carry(along) * 0.25);
+        assert!(gap(&onward, &m.exp(&p, along * 1.25)) < 2.0 * tolerance * scale, "arrival {p:?} {along:?}");
+    });
+    // No torsion. The pole ladder, built of exp and log alone, is parallel transport up to fourth order in the size of its rungs
+    // (exactly on symmetric spaces): reflect exp(p, v) in the middle of the geodesic, and its mirror image lies at −v carried
+    // over. A transport that twists about the direction of travel, such as leaving body coordinates as they are on SO(3),
+    // obeys all laws above but is off by second order here.
+    let rung = 0.3 * m.injectivity_radius().min(1.0);
+    let (coarse, fine, allowed) = (Cell::new(0.0), Cell::new(0.0), Cell::new(0.0));
+    run_cases(cases, sample(), |(p, [along, v, _])| {
+        if m.norm(&p, along) == 0.0 || m.norm(&p, v) == 0.0 {
+            return;
+        }
+        let (along, v) = (along * (rung / m.norm(&p, along)), v * (rung / m.norm(&p, v)));
+        let ladder_gap = |h: f64| {
+            let (along, v) = (along * h, v * h);
+            let (middle, q) = (m.exp(&p, along * 0.5), m.exp(&p, along));
+            let mirrored = m.exp(&middle, -m.log(&middle, &m.exp(&p, v)).unwrap());
+            m.norm(&q, -m.log(&q, &mirrored).unwrap() - m.transport(&p, along, v))
+        };
+        coarse.set(coarse.get() + ladder_gap(1.0));
+        fine.set(fine.get() + ladder_gap(0.5));
+        allowed.set(allowed.get() + 4.0 * tolerance * (1.0 + size(&p)));
+    });
+    let (coarse, fine, allowed) = (coarse.get(), fine.get(), allowed.get());
+    assert!(fine < coarse / 12.0 + allowed, "pole ladder {coarse:e}, half of it {fine:e}, roundings {allowed:e}");
+}
+
+fn matrix_gap(p: &Pose, q: &Pose) -> f64 {
+    (p.to_homogeneous() - q.to_homogeneous()).norm()
+}
+
+fn vector_gap<const N: usize>(p: &SVector<f64, N>, q: &SVector<f64, N>) -> f64 {
+    (p - q).norm()
 }
 
 #[test]
 fn space_obeys_the_manifold_laws() {
-    manifold_laws(&R3::default(), displacement, displacement, |p| p.norm(), |p, q| (p - q).norm());
+    manifold_laws(CLOSED_FORM, &R3::default(), || free(displacement(), displacement), |p| p.norm(), vector_gap);
+}
+
+#[test]
+fn the_sphere_obeys_the_manifold_laws() {
+    manifold_laws(CLOSED_FORM, &Sphere, on_sphere, |_| 1.0, vector_gap);
+}
+
+#[test]
+fn planar_rotations_obey_the_manifold_laws() {
+    let gap = |p: &UnitComplex<f64>, q: &UnitComplex<f64>| (p.as_ref() - q.as_ref()).norm();
+    manifold_laws(CLOSED_FORM, &So2, || free(signed_angle().prop_map(UnitComplex::new), signed_angle), |_| 1.0, gap);
 }
 
 #[test]
@@ -109,11 +163,23 @@ fn rotations_obey_the_manifold_laws() {
     let gap = |p: &UnitQuaternion<f64>, q: &UnitQuaternion<f64>| {
         (p.to_rotation_matrix().matrix() - q.to_rotation_matrix().matrix()).norm()
     };
-    manifold_laws(&So3, rotation, rotation_vector, |_| 1.0, gap);
+    manifold_laws(CLOSED_FORM, &So3, || free(rotation(), rotation_vector), |_| 1.0, gap);
 }
 
-fn matrix_gap(p: &Pose, q: &Pose) -> f64 {
-    (p.to_homogeneous() - q.to_homogeneous()).norm()
+#[test]
+fn planar_poses_obey_the_manifold_laws() {
+    let metric = Se2::with_weights(4.0, 1.0).unwrap();
+    let gap = |p: &Isometry2<f64>, q: &Isometry2<f64>| (p.to_homogeneous() - q.to_homogeneous()).norm();
+    let sample = || free(planar_pose(), planar_twist);
+    manifold_laws(CLOSED_FORM, &metric, sample, |p| 2.0 * (1.0 + p.translation.vector.norm()), gap);
+}
+
+#[test]
+fn similarities_obey_the_manifold_laws() {
+    let metric = Sim2::with_weights(10.0, 1.0).unwrap();
+    let gap = |p: &Similarity2<f64>, q: &Similarity2<f64>| (p.to_homogeneous() - q.to_homogeneous()).norm();
+    let size = |p: &Similarity2<f64>| 4.0 * (1.0 + p.scaling() + p.isometry.translation.vector.norm());
+    manifold_laws(CLOSED_FORM, &metric, || free(similarity(), similarity_twist), size, gap);
 }
 
 #[test]
@@ -121,8 +187,24 @@ fn poses_obey_the_manifold_laws() {
     for length_m in [0.05, 1.0, 20.0] {
         let metric = Se3::with_metres_per_radian(length_m).unwrap();
         let size = |p: &Pose| length_m.max(1.0) * (1.0 + p.translation.vector.norm());
-        manifold_laws(&metric, pose, twist, size, matrix_gap);
+        manifold_laws(CLOSED_FORM, &metric, || free(pose(), twist), size, matrix_gap);
     }
+}
+
+#[test]
+fn the_saddle_obeys_the_manifold_laws() {
+    manifold_laws(INTEGRATED, &saddle(), || on_patch(1.5, 3.0), |p| p.norm(), vector_gap);
+}
+
+/// Slopes are at most 1, so lengths at most √2 times those in the plane: below the injectivity radius π.
+#[test]
+fn the_egg_box_obeys_the_manifold_laws() {
+    manifold_laws(INTEGRATED, &egg_box(), || on_patch(2.0, 2.2), |p| p.norm(), vector_gap);
+}
+
+#[test]
+fn unit_segments_obey_the_manifold_laws() {
+    manifold_laws(INTEGRATED, &LevelSet::unit_segments(), on_segments, |p| p.norm(), vector_gap);
 }
 
 #[test]
@@ -165,6 +247,60 @@ fn the_screw_norm_is_no_distance() {
     assert!(broken_count.get() > 0, "expected the screw norm to break the triangle inequality somewhere");
 }
 
+/// SO(3) with the transport that leaves body coordinates as they are: an isometry, but with torsion.
+struct Twisted;
+impl Manifold for Twisted {
+    type Point = UnitQuaternion<f64>;
+    type Tangent = Vector3<f64>;
+    fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
+        So3.exp(p, v)
+    }
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
+        So3.log(p, q)
+    }
+    fn inner(&self, p: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
+        So3.inner(p, u, v)
+    }
+    fn transport(&self, _: &Self::Point, _: Self::Tangent, v: Self::Tangent) -> Self::Tangent {
+        v
+    }
+    fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
+        So3.distance(p, q)
+    }
+    fn injectivity_radius(&self) -> f64 {
+        So3.injectivity_radius()
+    }
+    fn is_finite(&self, p: &Self::Point) -> bool {
+        So3.is_finite(p)
+    }
+}
+
+#[test]
+#[should_panic(expected = "pole ladder")]
+fn a_transport_with_torsion_breaks_the_laws() {
+    let gap = |p: &UnitQuaternion<f64>, q: &UnitQuaternion<f64>| {
+        (p.to_rotation_matrix().matrix() - q.to_rotation_matrix().matrix()).norm()
+    };
+    manifold_laws(CLOSED_FORM, &Twisted, || free(rotation(), rotation_vector), |_| 1.0, gap);
+}
+
+/// Eq. 4.21 weighs as stated: 10·(1² + 0.5²) + 3² + 4² = 37.5; rigid motions keep it, a scaling does not.
+#[test]
+fn the_similarity_metric_is_invariant_under_rigid_motions_only() {
+    let metric = Sim2::with_weights(10.0, 1.0).unwrap();
+    let a = Similarity2::identity();
+    let b = Similarity2::new(nalgebra::Vector2::new(3.0, 4.0), -0.5, 1f64.exp());
+    assert!((metric.distance(&a, &b) - 37.5f64.sqrt()).abs() < 1e-14);
+    let rigid = Similarity2::new(nalgebra::Vector2::new(-2.0, 0.3), 1.2, 1.0);
+    assert!((metric.distance(&(rigid * a), &(rigid * b)) - 37.5f64.sqrt()).abs() < 1e-14);
+    let doubling = Similarity2::new(nalgebra::Vector2::zeros(), 0.0, 2.0);
+    assert!((metric.distance(&(doubling * a), &(doubling * b)) - 112.5f64.sqrt()).abs() < 1e-13);
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(Sim2::with_weights(bad, 1.0).is_none() && Sim2::with_weights(1.0, bad).is_none());
+        assert!(Se2::with_weights(bad, 1.0).is_none() && Se2::with_weights(1.0, bad).is_none());
+    }
+}
+
 #[test]
 fn half_turns_have_no_logarithm() {
     let half_turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(0.0, 0.0, 1.0, 0.0));
@@ -175,73 +311,13 @@ fn half_turns_have_no_logarithm() {
     let metric = Se3::default();
     let refused = metric.log(&Pose::identity(), &pose).unwrap_err();
     assert!((refused.distance - (std::f64::consts::PI.powi(2) + 9.0).sqrt()).abs() < 1e-14);
-}
 
-/// ‖exp(v+δ)·(exp(Jl δ)·exp(v))⁻¹‖ must fall with δ²: halving δ divides it by four. J = I, Jr in place of Jl, or a wrong
-/// coefficient leaves a first-order error and a ratio of two.
-#[test]
-fn jacobians_are_derivatives_of_exp() {
-    let v = Twist::from_vector(&Vector6::new(0.4, -0.8, 0.3, 0.9, -0.5, 0.7));
-    let direction = Vector6::new(0.3, 0.5, -0.2, 0.6, 0.1, -0.4);
-    for angle_factor in [1e-3, 1.0, 1.6, 2.2] {
-        let v = Twist::new(v.linear, v.angular * angle_factor);
-        let error = |h: f64, left: bool| {
-            let stepped = Se3Group::exp(Twist::from_vector(&(v.to_vector() + direction * h)));
-            let step = |jacobian: Matrix6<f64>| Se3Group::exp(Twist::from_vector(&(jacobian * direction * h)));
-            let predicted = if left {
-                step(Se3Group::left_jacobian(v)) * Se3Group::exp(v)
-            } else {
-                Se3Group::exp(v) * step(Se3Group::right_jacobian(v))
-            };
-            matrix_gap(&stepped, &predicted)
-        };
-        for left in [true, false] {
-            let order = (error(2e-3, left) / error(1e-3, left)).log2();
-            assert!((1.9..2.1).contains(&order), "order {order} at factor {angle_factor}, left {left}");
-        }
-        let w = v.angular;
-        let product = So3Group::right_jacobian(w) * So3Group::right_jacobian_inverse(w);
-        assert!((product - nalgebra::Matrix3::identity()).norm() < 1e-14);
-    }
-}
-
-#[test]
-fn groups_obey_the_group_laws() {
-    let near = || (prop::array::uniform3(-2.0..2.0_f64), rotation_vector()).prop_map(|(v, w)| Twist::new(v.into(), w));
-    run((near(), near(), near()), |(u, v, w)| {
-        let (a, b, c) = (Se3Group::exp(u), Se3Group::exp(v), Se3Group::exp(w));
-        let compose = Se3Group::compose;
-        // Numbers up to about 10: a few hundred roundings.
-        let tolerance = 1e3 * f64::EPSILON;
-        assert!(matrix_gap(&compose(&compose(&a, &b), &c), &compose(&a, &compose(&b, &c))) < tolerance);
-        assert!(matrix_gap(&compose(&a, &Se3Group::inverse(&a)), &Se3Group::identity()) < tolerance);
-        let back = Se3Group::log(&a).unwrap();
-        // V⁻¹ is well conditioned up to half a turn: its entries stay below π/2.
-        assert!((back - u).to_vector().norm() < tolerance, "{u:?} {back:?}");
-        let moved = compose(&compose(&a, &Se3Group::exp(v * 0.3)), &Se3Group::inverse(&a));
-        let adjoined = Se3Group::adjoint(&a) * (v * 0.3).to_vector();
-        assert!(matrix_gap(&moved, &Se3Group::exp(Twist::from_vector(&adjoined))) < 1e-12);
-    });
-}
-
-/// exp against the power series of the 4×4 matrix, which shares no formula with it.
-#[test]
-fn exp_equals_the_matrix_exponential() {
-    let near = || (prop::array::uniform3(-2.0..2.0_f64), rotation_vector()).prop_map(|(v, w)| Twist::new(v.into(), w));
-    run(near(), |v| {
-        let mut hat = nalgebra::Matrix4::zeros();
-        hat.fixed_view_mut::<3, 3>(0, 0).copy_from(&v.angular.cross_matrix());
-        hat.fixed_view_mut::<3, 1>(0, 3).copy_from(&v.linear);
-        // Scaling and squaring: ‖hat/64‖ < 0.1, where 12 terms leave 0.1¹²/12! ≈ 2e-21.
-        let small = hat / 64.0;
-        let (mut sum, mut term) = (nalgebra::Matrix4::identity(), nalgebra::Matrix4::identity());
-        for k in 1..=12 {
-            term = term * small / k as f64;
-            sum += term;
-        }
-        for _ in 0..6 {
-            sum *= sum;
-        }
-        assert!((sum - Se3Group::exp(v).to_homogeneous()).norm() < 1e3 * f64::EPSILON * (1.0 + v.linear.norm()));
-    });
+    let half_turn = UnitComplex::new(std::f64::consts::PI);
+    assert_eq!(So2.log(&UnitComplex::identity(), &half_turn).unwrap_err().distance, std::f64::consts::PI);
+    let pose = Isometry2::from_parts(nalgebra::Translation2::new(3.0, 0.0), half_turn);
+    let refused = Se2::default().log(&Isometry2::identity(), &pose).unwrap_err();
+    assert!((refused.distance - (std::f64::consts::PI.powi(2) + 9.0).sqrt()).abs() < 1e-14);
+    let scaled = Similarity2::from_isometry(pose, 1.0);
+    assert_eq!(Sim2::default().log(&Similarity2::identity(), &scaled).unwrap_err(), refused);
+    assert_eq!(Sphere.log(&Vector3::x(), &-Vector3::x()).unwrap_err().distance, std::f64::consts::PI);
 }

@@ -1,0 +1,74 @@
+//! Poses in the plane as a Riemannian manifold.
+
+use nalgebra::{Isometry2, UnitComplex};
+
+use crate::manifold::{CutLocus, Manifold};
+use crate::planar_twist::PlanarTwist;
+use crate::so2::So2;
+
+/// SE(2) with the left-invariant product metric d² = α·angle² + β·‖p₂ − p₁‖² (thesis eq. 4.10, with the angle taken the short
+/// way round).
+///
+/// Tangents at a pose are body twists: `linear` = Rᵀṗ, `angular` = θ̇. A geodesic turns evenly while the origin moves on a
+/// straight line; the screw motion is [`Se2Group`](crate::Se2Group)'s.
+///
+/// ```
+/// use se3_geom::{Manifold, Se2, nalgebra::{Isometry2, Vector2}};
+/// let metric = Se2::with_weights(4.0, 1.0).unwrap(); // one radian counts as two metres
+/// let pose = Isometry2::new(Vector2::new(3.0, 0.0), 2.0);
+/// assert!((metric.distance(&Isometry2::identity(), &pose) - 5.0).abs() < 1e-15);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Se2 {
+    alpha: f64,
+    beta: f64,
+}
+
+impl Se2 {
+    /// The metric with weights α in rad⁻² and β in m⁻², both positive and finite; `None` otherwise.
+    pub fn with_weights(alpha: f64, beta: f64) -> Option<Self> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        (positive(alpha) && positive(beta)).then_some(Self { alpha, beta })
+    }
+}
+
+impl Default for Se2 {
+    /// α = β = 1: one radian counts as one metre.
+    fn default() -> Self {
+        Self { alpha: 1.0, beta: 1.0 }
+    }
+}
+
+impl Manifold for Se2 {
+    type Point = Isometry2<f64>;
+    type Tangent = PlanarTwist;
+
+    fn exp(&self, p: &Self::Point, v: PlanarTwist) -> Self::Point {
+        let translation = p.translation.vector + p.rotation * v.linear;
+        Isometry2::from_parts(translation.into(), So2.exp(&p.rotation, v.angular))
+    }
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<PlanarTwist, CutLocus> {
+        let angular = So2.log(&p.rotation, &q.rotation).map_err(|_| CutLocus { distance: self.distance(p, q) })?;
+        let linear = p.rotation.inverse() * (q.translation.vector - p.translation.vector);
+        Ok(PlanarTwist { linear, angular })
+    }
+    fn inner(&self, _: &Self::Point, u: PlanarTwist, v: PlanarTwist) -> f64 {
+        self.alpha * u.angular * v.angular + self.beta * u.linear.dot(&v.linear)
+    }
+    /// The world-frame velocity of the origin stays; the body sees it turned back by the angle that it has turned.
+    fn transport(&self, _: &Self::Point, along: PlanarTwist, v: PlanarTwist) -> PlanarTwist {
+        PlanarTwist { linear: UnitComplex::new(-along.angular) * v.linear, ..v }
+    }
+    fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
+        let angle = So2.distance(&p.rotation, &q.rotation);
+        let squared_length = (q.translation.vector - p.translation.vector).norm_squared();
+        (self.alpha * angle * angle + self.beta * squared_length).sqrt()
+    }
+    /// π√α: half a turn at a standstill is the nearest cut point.
+    fn injectivity_radius(&self) -> f64 {
+        So2.injectivity_radius() * self.alpha.sqrt()
+    }
+    fn is_finite(&self, p: &Self::Point) -> bool {
+        So2.is_finite(&p.rotation) && p.translation.vector.iter().all(|x| x.is_finite())
+    }
+}

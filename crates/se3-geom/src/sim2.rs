@@ -1,0 +1,96 @@
+//! Planar similarities as a Riemannian manifold.
+
+use nalgebra::{Isometry2, Similarity2, UnitComplex};
+
+use crate::manifold::{CutLocus, Manifold};
+use crate::planar_twist::SimilarityTwist;
+use crate::so2::So2;
+
+/// The similarities x ↦ e^λ·R(θ)·x + d of the plane as the product of scales, rotations and translations,
+/// d² = α((λ₂ − λ₁)² + angle²) + β‖d₂ − d₁‖² (thesis §4.6, eq. 4.21 with the square that its last term lacks).
+///
+/// The metric is invariant under rigid motions from the left, not under scalings, which stretch the translations (the thesis
+/// calls it left-invariant). Tangents: `scaling` = λ̇, `angular` = θ̇, and `linear` = Rᵀḋ, turned into the body but not scaled.
+/// Geodesics scale and turn evenly while the origin moves on a straight line; the logarithmic spirals of the group are
+/// [`Sim2Group`](crate::Sim2Group)'s.
+///
+/// ```
+/// use se3_geom::{Manifold, Sim2, nalgebra::{Similarity2, Vector2}};
+/// let metric = Sim2::with_weights(10.0, 1.0).unwrap();
+/// let grown = Similarity2::new(Vector2::new(3.0, 4.0), 0.0, 1f64.exp());
+/// assert!((metric.distance(&Similarity2::identity(), &grown) - 35f64.sqrt()).abs() < 1e-14);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sim2 {
+    alpha: f64,
+    beta: f64,
+}
+
+impl Sim2 {
+    /// The metric with weights α, for squared radians and squared logarithms of scale alike, and β in m⁻², both positive and
+    /// finite; `None` otherwise.
+    pub fn with_weights(alpha: f64, beta: f64) -> Option<Self> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        (positive(alpha) && positive(beta)).then_some(Self { alpha, beta })
+    }
+}
+
+impl Default for Sim2 {
+    /// α = β = 1.
+    fn default() -> Self {
+        Self { alpha: 1.0, beta: 1.0 }
+    }
+}
+
+/// λ₂ − λ₁, accurate for scales that are nearly equal, and exactly antisymmetric.
+fn log_ratio(from: f64, into: f64) -> f64 {
+    let difference = into - from;
+    let smaller = from.min(into);
+    if difference.abs() < smaller {
+        (difference.abs() / smaller).ln_1p().copysign(difference)
+    } else {
+        into.ln() - from.ln()
+    }
+}
+
+impl Manifold for Sim2 {
+    type Point = Similarity2<f64>;
+    type Tangent = SimilarityTwist;
+
+    fn exp(&self, p: &Self::Point, v: SimilarityTwist) -> Self::Point {
+        let rotation = &p.isometry.rotation;
+        let translation = p.isometry.translation.vector + rotation * v.linear;
+        let isometry = Isometry2::from_parts(translation.into(), So2.exp(rotation, v.angular));
+        // The clamp keeps the scale positive where e^λ leaves the range of numbers, |λ| > 708.
+        Similarity2::from_isometry(isometry, (p.scaling() * v.scaling.exp()).clamp(f64::MIN_POSITIVE, f64::MAX))
+    }
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<SimilarityTwist, CutLocus> {
+        let angular = So2
+            .log(&p.isometry.rotation, &q.isometry.rotation)
+            .map_err(|_| CutLocus { distance: self.distance(p, q) })?;
+        let world = q.isometry.translation.vector - p.isometry.translation.vector;
+        let linear = p.isometry.rotation.inverse() * world;
+        Ok(SimilarityTwist { linear, angular, scaling: log_ratio(p.scaling(), q.scaling()) })
+    }
+    fn inner(&self, _: &Self::Point, u: SimilarityTwist, v: SimilarityTwist) -> f64 {
+        self.alpha * (u.scaling * v.scaling + u.angular * v.angular) + self.beta * u.linear.dot(&v.linear)
+    }
+    /// As on [`Se2`](crate::Se2); scales are a flat factor.
+    fn transport(&self, _: &Self::Point, along: SimilarityTwist, v: SimilarityTwist) -> SimilarityTwist {
+        SimilarityTwist { linear: UnitComplex::new(-along.angular) * v.linear, ..v }
+    }
+    fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
+        let angle = So2.distance(&p.isometry.rotation, &q.isometry.rotation);
+        let scaling = log_ratio(p.scaling(), q.scaling());
+        let squared_length = (q.isometry.translation.vector - p.isometry.translation.vector).norm_squared();
+        (self.alpha * (scaling * scaling + angle * angle) + self.beta * squared_length).sqrt()
+    }
+    /// π√α: half a turn at a standstill is the nearest cut point.
+    fn injectivity_radius(&self) -> f64 {
+        So2.injectivity_radius() * self.alpha.sqrt()
+    }
+    fn is_finite(&self, p: &Self::Point) -> bool {
+        let rotation = So2.is_finite(&p.isometry.rotation);
+        rotation && p.scaling().is_finite() && p.isometry.translation.vector.iter().all(|x| x.is_finite())
+    }
+}

@@ -1,0 +1,123 @@
+//! Half turns, numbers that are no rotation, and the rotation nearest to a matrix.
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::PI;
+
+use nalgebra::{Matrix3, Quaternion, Similarity2, UnitComplex, UnitQuaternion, Vector2, Vector3};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed, TestRunner};
+use se3_geom::{
+    LieGroup, Manifold, NearestRotationError, Pose, Se2Group, Se3Group, Sim2Group, So2Group, So3, So3Group, nalgebra,
+    nearest_rotation,
+};
+
+/// At exactly half a turn both logarithms are valid, and one of them comes back: length π, and exp leads to the element.
+#[test]
+fn half_turns_have_a_group_logarithm() {
+    for axis in [Vector3::x(), Vector3::new(1.0, -2.0, 3.0).normalize(), Vector3::new(-0.6, 0.0, -0.8)] {
+        for w in [0.0, -0.0] {
+            let half_turn = UnitQuaternion::new_unchecked(Quaternion::from_parts(w, axis));
+            let log = So3Group::log(&half_turn).unwrap();
+            assert!((log.norm() - PI).abs() <= 4e-15 * PI);
+            assert!((log.normalize().dot(&axis).abs() - 1.0).abs() < 4e-15);
+            let pose = Pose::from_parts(Vector3::new(0.3, 4.0, -1.0).into(), half_turn);
+            let screw = Se3Group::log(&pose).unwrap();
+            assert_eq!(screw.angular, log);
+            // exp(log) = a up to the roundings of a half turn, 4 m away.
+            assert!((Se3Group::exp(screw).to_homogeneous() - pose.to_homogeneous()).norm() < 16.0 * f64::EPSILON * 4.0);
+            // The manifold, whose logarithm must be continuous, refuses the same half turn.
+            assert_eq!(So3.log(&UnitQuaternion::identity(), &half_turn).unwrap_err().distance, PI);
+        }
+    }
+    for sine in [0.0, -0.0] {
+        let half_turn = UnitComplex::new_unchecked(nalgebra::Complex::new(-1.0, sine));
+        assert_eq!(So2Group::log(&half_turn).unwrap().abs(), PI);
+    }
+}
+
+#[test]
+fn what_is_no_element_has_no_logarithm_and_the_error_names_the_angle() {
+    let no_rotation = UnitQuaternion::new_unchecked(Quaternion::new(f64::NAN, 1.0, 0.0, 0.0));
+    assert!(So3Group::log(&no_rotation).unwrap_err().to_string().contains("NaN rad"));
+    assert!(So3.log(&no_rotation, &UnitQuaternion::identity()).is_err());
+    for (w, x) in [(0.0, 0.0), (1.0, f64::INFINITY), (f64::INFINITY, 0.0)] {
+        assert!(So3Group::log(&UnitQuaternion::new_unchecked(Quaternion::new(w, x, 0.0, 0.0))).is_err());
+    }
+    let quarter = UnitQuaternion::from_scaled_axis(Vector3::x() * (PI / 2.0));
+    let nowhere = Pose::from_parts(Vector3::new(0.0, f64::INFINITY, 0.0).into(), quarter);
+    let error = Se3Group::log(&nowhere).unwrap_err();
+    assert!((error.angle_rad - PI / 2.0).abs() < 1e-15 && error.to_string().contains("1.57"));
+    assert!(Se2Group::log(&nalgebra::Isometry2::new(Vector2::new(f64::NAN, 0.0), 1.0)).is_err());
+    let mirrored = Similarity2::new(Vector2::zeros(), 0.5, -2.0);
+    let error = Sim2Group::log(&mirrored).unwrap_err();
+    assert_eq!((error.angle_rad, error.scale), (0.5, -2.0));
+    assert!(So2Group::log(&UnitComplex::new(f64::NAN)).is_err());
+}
+
+#[test]
+fn distance_and_log_keep_their_digits_between_near_rotations() {
+    let p = So3Group::exp(Vector3::new(0.3, -1.2, 0.5));
+    let near = Quaternion::new(p.w + 1e-13, p.i, p.j - 2e-13, p.k);
+    let q = UnitQuaternion::new_unchecked(near);
+    // dq is exact (multiples of an ulp), and to first order the rotation vector is 2·imag(p*·dq): relative error |dq| ≈ 2e-13.
+    let expected = (p.conjugate().into_inner() * (near - p.into_inner())).imag() * 2.0;
+    assert!((So3.log(&p, &q).unwrap() - expected).norm() < 1e-12 * expected.norm());
+    assert!((So3.distance(&p, &q) - expected.norm()).abs() < 1e-12 * expected.norm());
+    let tiny = So3Group::exp(Vector3::new(0.0, 3e-300, -4e-300));
+    assert!((So3.distance(&UnitQuaternion::identity(), &tiny) - 5e-300).abs() < 1e-314);
+}
+
+fn entries() -> impl Strategy<Value = Matrix3<f64>> {
+    prop::array::uniform9(-1.0..1.0_f64).prop_map(|m| Matrix3::from_column_slice(&m))
+}
+
+/// The nearest rotation by definition: RᵀM is symmetric and tr(RᵀM)·I − RᵀM, the second derivative of the distance along rotations,
+/// is positive semidefinite. A reflection would fail the first assertion, R⁻¹ or a wrong eigenvector the others.
+#[test]
+fn nearest_rotation_is_the_nearest() {
+    let config = Config { cases: 2000, rng_seed: RngSeed::Fixed(5), failure_persistence: None, ..Config::default() };
+    let reflected = std::cell::Cell::new(0);
+    TestRunner::new(config)
+        .run(&(entries(), -200.0..200.0_f64), |(m, exponent)| {
+            let singular = m.svd_unordered(false, false).singular_values;
+            let (smallest, sum) = (singular.min(), singular.sum());
+            let sign = m.determinant().signum();
+            let gap = sum - singular.max() - smallest + sign * smallest;
+            prop_assume!(gap > 1e-3);
+            reflected.set(reflected.get() + u32::from(sign < 0.0));
+            let r = nearest_rotation(&(m * 10f64.powf(exponent))).unwrap().to_rotation_matrix().into_inner();
+            assert!((r.determinant() - 1.0).abs() < 1e-14);
+            let s = r.transpose() * m;
+            // The eigenvector turns by the solver's error over the gap: tens of ε/1e-3.
+            assert!((s - s.transpose()).norm() < 1e-12 / gap.min(1.0) * 1e-1, "{s}");
+            assert!((Matrix3::from_diagonal_element(s.trace()) - s).symmetric_eigenvalues().min() > 0.0);
+            assert!((s.trace() - (sum - smallest + sign * smallest)).abs() < 1e-13);
+            Ok(())
+        })
+        .unwrap();
+    assert!(reflected.get() > 500, "the determinant matters in half of the cases");
+}
+
+#[test]
+fn nearest_rotation_of_a_rotation_is_itself_and_ties_are_refused() {
+    let r = So3Group::exp(Vector3::new(0.4, -2.0, 1.3));
+    let found = nearest_rotation(&r.to_rotation_matrix().into_inner()).unwrap();
+    assert!(So3.distance(&r, &found) < 16.0 * f64::EPSILON);
+    // U·Vᵀ of a mirror in z is the mirror itself: the corrected formula gives the rotation 1 (or a half turn where σ's tie).
+    let flattened = Matrix3::from_diagonal(&Vector3::new(3.0, 2.0, -1.0));
+    assert!(nearest_rotation(&flattened).unwrap().angle() < 1e-15);
+    // Rank two is enough, whatever the sign of the vanishing singular value.
+    let plane = Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, 0.0));
+    assert!(nearest_rotation(&plane).unwrap().angle() < 1e-15);
+
+    let mirrored = -Matrix3::identity();
+    assert!(matches!(nearest_rotation(&mirrored), Err(NearestRotationError::NotUnique { .. })));
+    let rotated_tie = r.to_rotation_matrix().into_inner() * Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, -1.0));
+    assert!(matches!(nearest_rotation(&rotated_tie), Err(NearestRotationError::NotUnique { .. })));
+    let line = Vector3::new(1.0, 2.0, 3.0) * Vector3::new(-1.0, 0.5, 2.0).transpose();
+    assert!(matches!(nearest_rotation(&line), Err(NearestRotationError::NotUnique { .. })));
+    assert_eq!(nearest_rotation(&Matrix3::zeros()), Err(NearestRotationError::NotUnique { gap: 0.0, size: 0.0 }));
+    let mut broken = Matrix3::identity();
+    broken[(2, 1)] = f64::NAN;
+    assert_eq!(nearest_rotation(&broken), Err(NearestRotationError::NonFinite { row: 2, column: 1 }));
+}
