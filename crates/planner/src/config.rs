@@ -20,6 +20,8 @@ pub struct Config {
     pub minimum_verdict: Verdict,
     /// Whether a trajectory may begin with a straight joint move from the present state to the first pose.
     pub approach: bool,
+    /// A joint state older than this, in s, no longer says where the robot stands.
+    pub joint_state_max_age_s: f64,
     /// Accuracy of the joint path.
     pub path: PathOptions,
     /// Publishing rate and scaling of limits.
@@ -34,6 +36,7 @@ impl Default for Config {
             start: None,
             minimum_verdict: Verdict::Plausible,
             approach: true,
+            joint_state_max_age_s: 1.0,
             path: PathOptions::default(),
             timing: TimingOptions::default(),
         }
@@ -55,6 +58,10 @@ impl Config {
         let length_m = self.metres_per_radian;
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(Refusal::Config(format!("metres_per_radian must be a positive number, not {length_m}")));
+        }
+        let age_s = self.joint_state_max_age_s;
+        if age_s.is_nan() || age_s <= 0.0 {
+            return Err(Refusal::Config(format!("joint_state_max_age_s must be a positive number, not {age_s}")));
         }
         Ok(())
     }

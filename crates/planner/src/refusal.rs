@@ -36,6 +36,32 @@ pub enum Refusal {
         /// How many were given.
         given: usize,
     },
+    /// The robot was not heard of for too long.
+    #[error(
+        "the last joint state is {age_s:.1} s old, more than the {allowed_s} s allowed: where the robot stands is unknown"
+    )]
+    StaleJointState {
+        /// Age in s.
+        age_s: f64,
+        /// What the configuration allows, in s.
+        allowed_s: f64,
+    },
+    /// The robot moves; a trajectory from rest would begin with a jump.
+    #[error("{joint} is moving at {velocity:.3} rad/s (or m/s): plan again when the robot stands")]
+    Moving {
+        /// Name of the joint.
+        joint: String,
+        /// Its velocity in rad/s or m/s.
+        velocity: f64,
+    },
+    /// The robot left the place from which its trajectory was planned.
+    #[error("{joint} moved by {by:.4} rad (or m) while the trajectory was planned: plan again when the robot stands")]
+    MovedMeanwhile {
+        /// Name of the joint.
+        joint: String,
+        /// How far, in rad or m.
+        by: f64,
+    },
     /// The poses admit no order at all.
     #[error("ordering: {0}")]
     Order(#[from] OrderError),

@@ -3,6 +3,9 @@
 //! Planning takes seconds and must not block whoever receives messages, so the session never plans itself: it hands out a
 //! [`Job`], which the shell runs wherever it likes and brings back as [`Input::Finished`]. While a job runs, the newest poses
 //! wait; older waiting ones are superseded and counted. What was cleared meanwhile is not published.
+//!
+//! Where joint states arrive, a trajectory starts exactly where the robot stands; a robot that moves, that was not heard of for a
+//! while, or that moved while its trajectory was planned gets a refusal instead of a jump.
 
 use std::sync::Arc;
 
@@ -12,6 +15,11 @@ use se3_geom::pose_from_xyzw;
 use crate::config::Config;
 use crate::pipeline::{Plan, Request, plan};
 use crate::refusal::Refusal;
+
+/// A joint slower than this stands, in rad/s or m/s: above the noise of velocity estimates, below any motion on purpose.
+const STANDSTILL_PER_S: f64 = 0.01;
+/// A joint that moved by less than this stood still, in rad or m: above encoder noise, and small enough for a controller to take up.
+const STANDSTILL: f64 = 0.002;
 
 /// Something that happened.
 #[derive(Debug)]
@@ -31,6 +39,8 @@ pub enum Input {
         names: Vec<String>,
         /// Positions in rad (or m), one a name.
         positions: Vec<f64>,
+        /// Velocities in rad/s (or m/s), one a name, or none at all.
+        velocities: Vec<f64>,
     },
     /// Plan the last poses again, from the present joint state.
     Replan,
@@ -101,12 +111,20 @@ pub struct Counters {
     pub discarded: u64,
 }
 
+/// The robot's joints in its own order, as they were last measured.
+#[derive(Debug, Clone)]
+struct MeasuredJoints {
+    at_s: f64,
+    positions: Vec<f64>,
+    velocities: Option<Vec<f64>>,
+}
+
 /// The state between messages.
 #[derive(Debug)]
 pub struct Session {
     robot: Arc<Robot>,
     config: Arc<Config>,
-    joint_positions: Option<Vec<f64>>,
+    joints: Option<MeasuredJoints>,
     last: Option<Request>,
     running: bool,
     waiting: bool,
@@ -128,7 +146,7 @@ impl Session {
         Self {
             robot: Arc::new(robot),
             config: Arc::new(config),
-            joint_positions: None,
+            joints: None,
             last: None,
             running: false,
             waiting: false,
@@ -147,14 +165,16 @@ impl Session {
         self.counters
     }
 
-    /// Takes one input and says what to do, in this order.
-    pub fn handle(&mut self, input: Input) -> Vec<Output> {
+    /// Takes one input that arrives at `now_s`, in s on a clock that never steps back, and says what to do, in this order.
+    pub fn handle(&mut self, now_s: f64, input: Input) -> Vec<Output> {
         match input {
-            Input::Poses { frame_id, stamp_ns, poses } => self.poses(frame_id, stamp_ns, &poses),
-            Input::JointState { names, positions } => self.joint_state(&names, &positions),
+            Input::Poses { frame_id, stamp_ns, poses } => self.poses(now_s, frame_id, stamp_ns, &poses),
+            Input::JointState { names, positions, velocities } => {
+                self.joint_state(now_s, &names, &positions, &velocities)
+            }
             Input::Replan if self.last.is_none() => vec![reply(false, "there are no poses to plan")],
             Input::Replan => {
-                let mut outputs = self.request_plan();
+                let mut outputs = self.request_plan(now_s);
                 outputs.push(reply(true, "planning the last poses again"));
                 outputs
             }
@@ -164,13 +184,13 @@ impl Session {
                 self.generation += 1;
                 vec![reply(true, "poses and results are forgotten")]
             }
-            Input::Finished(outcome) => self.finished(outcome),
+            Input::Finished(outcome) => self.finished(now_s, outcome),
         }
     }
 
     /// Takes new poses, or refuses them as a whole. Refused poses also displace the ones before: what was asked for last must
     /// not be answered with a motion through something older.
-    fn poses(&mut self, frame_id: String, stamp_ns: i64, raw: &[RawPose]) -> Vec<Output> {
+    fn poses(&mut self, now_s: f64, frame_id: String, stamp_ns: i64, raw: &[RawPose]) -> Vec<Output> {
         self.counters.received += 1;
         self.counters.superseded += u64::from(self.waiting);
         let checked = raw.iter().enumerate().map(|(input_pose, raw)| {
@@ -180,71 +200,112 @@ impl Session {
         match checked.collect::<Result<Vec<_>, _>>() {
             Ok(poses) => {
                 self.last = Some(Request { frame_id, stamp_ns, poses, start: None });
-                self.request_plan()
+                self.request_plan(now_s)
             }
             Err(refusal) => {
                 self.last = None;
                 self.waiting = false;
                 self.generation += 1;
-                self.counters.refused += 1;
                 let request = Request { frame_id, stamp_ns, ..Request::default() };
-                vec![Output::Publish(Box::new(Outcome { generation: self.generation, request, result: Err(refusal) }))]
+                vec![self.publish(request, Err(refusal))]
             }
         }
     }
 
-    fn request_plan(&mut self) -> Vec<Output> {
+    fn request_plan(&mut self, now_s: f64) -> Vec<Output> {
         if self.running {
             self.waiting = true;
             return Vec::new();
         }
         let Some(poses) = self.last.clone() else { return Vec::new() };
-        self.running = true;
         self.waiting = false;
-        vec![Output::Run(Job {
-            generation: self.generation,
-            robot: Arc::clone(&self.robot),
-            config: Arc::clone(&self.config),
-            request: Request { start: self.joint_positions.clone(), ..poses },
-        })]
+        match self.present_state(now_s) {
+            Ok(start) => {
+                self.running = true;
+                vec![Output::Run(Job {
+                    generation: self.generation,
+                    robot: Arc::clone(&self.robot),
+                    config: Arc::clone(&self.config),
+                    request: Request { start, ..poses },
+                })]
+            }
+            Err(refusal) => vec![self.publish(poses, Err(refusal))],
+        }
     }
 
-    fn finished(&mut self, outcome: Box<Outcome>) -> Vec<Output> {
+    /// Where the robot stands, if anything says so; a refusal where that cannot be relied on.
+    fn present_state(&self, now_s: f64) -> Result<Option<Vec<f64>>, Refusal> {
+        let Some(joints) = &self.joints else { return Ok(None) };
+        let (age_s, allowed_s) = (now_s - joints.at_s, self.config.joint_state_max_age_s);
+        if age_s > allowed_s {
+            return Err(Refusal::StaleJointState { age_s, allowed_s });
+        }
+        let moving = |velocity: &f64| velocity.abs() > STANDSTILL_PER_S;
+        if let Some(velocities) = &joints.velocities
+            && let Some(joint) = velocities.iter().position(moving)
+        {
+            let (joint, velocity) = (self.joint_name(joint), velocities[joint]);
+            return Err(Refusal::Moving { joint, velocity });
+        }
+        Ok(Some(joints.positions.clone()))
+    }
+
+    /// The refusal that is due where the robot left the place from which it was planned.
+    fn moved_since(&self, start: Option<&Vec<f64>>) -> Option<Refusal> {
+        let (start, joints) = (start?, self.joints.as_ref()?);
+        let moved = |joint: &usize| (joints.positions[*joint] - start[*joint]).abs() > STANDSTILL;
+        let joint = (0..start.len()).find(moved)?;
+        Some(Refusal::MovedMeanwhile { joint: self.joint_name(joint), by: joints.positions[joint] - start[joint] })
+    }
+
+    fn joint_name(&self, joint: usize) -> String {
+        self.robot.chain.joint_names()[joint].clone()
+    }
+
+    fn publish(&mut self, request: Request, result: Result<Plan, Refusal>) -> Output {
+        match result {
+            Ok(_) => self.counters.planned += 1,
+            Err(_) => self.counters.refused += 1,
+        }
+        Output::Publish(Box::new(Outcome { generation: self.generation, request, result }))
+    }
+
+    fn finished(&mut self, now_s: f64, outcome: Box<Outcome>) -> Vec<Output> {
         self.running = false;
         let mut outputs = Vec::new();
         if outcome.generation == self.generation {
-            match outcome.result {
-                Ok(_) => self.counters.planned += 1,
-                Err(_) => self.counters.refused += 1,
-            }
-            outputs.push(Output::Publish(outcome));
+            let Outcome { request, result, .. } = *outcome;
+            let moved = self.moved_since(request.start.as_ref());
+            let result = result.and_then(|plan| moved.map_or(Ok(plan), Err));
+            outputs.push(self.publish(request, result));
         } else {
             self.counters.discarded += 1;
         }
         if self.waiting {
-            outputs.extend(self.request_plan());
+            outputs.extend(self.request_plan(now_s));
         }
         outputs
     }
 
-    /// Keeps the positions of this robot's joints, by name. A message that lacks some of them belongs to something else.
-    fn joint_state(&mut self, names: &[String], positions: &[f64]) -> Vec<Output> {
-        if names.len() != positions.len() {
-            return vec![Output::Warn(format!(
-                "a joint state has {} names but {} positions and is ignored",
-                names.len(),
-                positions.len()
-            ))];
+    /// Keeps the state of this robot's joints, by name. A message that lacks some of them belongs to something else.
+    fn joint_state(&mut self, now_s: f64, names: &[String], positions: &[f64], velocities: &[f64]) -> Vec<Output> {
+        let ignored = |why: String| vec![Output::Warn(format!("a joint state is ignored: {why}"))];
+        let [n, p, v] = [names.len(), positions.len(), velocities.len()];
+        if n != p || (v != 0 && v != n) {
+            return ignored(format!("it has {n} names, {p} positions and {v} velocities"));
         }
-        let position_of = |joint: &String| names.iter().position(|name| name == joint).map(|i| positions[i]);
-        let Some(ours) = self.robot.chain.joint_names().iter().map(position_of).collect::<Option<Vec<_>>>() else {
+        let place = |joint: &String| names.iter().position(|name| name == joint);
+        let Some(places) = self.robot.chain.joint_names().iter().map(place).collect::<Option<Vec<_>>>() else {
             return Vec::new();
         };
-        if let Some(bad) = ours.iter().position(|q| !q.is_finite()) {
-            let joint = &self.robot.chain.joint_names()[bad];
-            return vec![Output::Warn(format!("the joint state of {joint} is not a finite number and is ignored"))];
+        let ours = |values: &[f64]| places.iter().map(|&i| values[i]).collect::<Vec<_>>();
+        let (positions, velocities) = (ours(positions), (v != 0).then(|| ours(velocities)));
+        let mut numbers = positions.iter().chain(velocities.iter().flatten());
+        if let Some(bad) = numbers.position(|x| !x.is_finite()) {
+            let joint = self.joint_name(bad % positions.len());
+            return ignored(format!("{joint} is not a finite number"));
         }
-        self.joint_positions = Some(ours);
+        self.joints = Some(MeasuredJoints { at_s: now_s, positions, velocities });
         Vec::new()
     }
 }

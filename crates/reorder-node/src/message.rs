@@ -28,7 +28,7 @@ pub(crate) fn poses_input(message: geometry::PoseArray) -> Input {
 }
 
 pub(crate) fn joint_state_input(message: JointState) -> Input {
-    Input::JointState { names: message.name, positions: message.position }
+    Input::JointState { names: message.name, positions: message.position, velocities: message.velocity }
 }
 
 pub(crate) fn header(frame_id: &str, stamp_ns: i64) -> Header {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use futures::StreamExt;
 use planner::{Input, Output, Session};
@@ -85,6 +85,7 @@ fn parameters(node: &Node) -> Vec<(String, ParameterValue)> {
 
 struct Shell {
     session: Session,
+    started: Instant,
     publishers: Publishers,
     logger: String,
     finished: mpsc::UnboundedReceiver<Input>,
@@ -94,11 +95,11 @@ struct Shell {
 impl Shell {
     fn new(session: Session, publishers: Publishers, logger: String) -> Self {
         let (finish, finished) = mpsc::unbounded_channel();
-        Self { session, publishers, logger, finished, finish }
+        Self { session, started: Instant::now(), publishers, logger, finished, finish }
     }
 
     fn handle(&mut self, input: Input, mut request: Option<ServiceRequest<Trigger::Service>>) {
-        for output in self.session.handle(input) {
+        for output in self.session.handle(self.started.elapsed().as_secs_f64(), input) {
             match output {
                 Output::Run(job) => {
                     let finish = self.finish.clone();
