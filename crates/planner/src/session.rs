@@ -13,13 +13,9 @@ use manipulator::Robot;
 use se3_geom::pose_from_xyzw;
 
 use crate::config::Config;
+use crate::joints::MeasuredJoints;
 use crate::pipeline::{Plan, Request, plan};
 use crate::refusal::Refusal;
-
-/// A joint slower than this stands, in rad/s or m/s: above the noise of velocity estimates, below any motion on purpose.
-const STANDSTILL_PER_S: f64 = 0.01;
-/// A joint that moved by less than this stood still, in rad or m: above encoder noise, and small enough for a controller to take up.
-const STANDSTILL: f64 = 0.002;
 
 /// Something that happened.
 #[derive(Debug)]
@@ -111,14 +107,6 @@ pub struct Counters {
     pub discarded: u64,
 }
 
-/// The robot's joints in its own order, as they were last measured.
-#[derive(Debug, Clone)]
-struct MeasuredJoints {
-    at_s: f64,
-    positions: Vec<f64>,
-    velocities: Option<Vec<f64>>,
-}
-
 /// The state between messages.
 #[derive(Debug)]
 pub struct Session {
@@ -170,7 +158,12 @@ impl Session {
         match input {
             Input::Poses { frame_id, stamp_ns, poses } => self.poses(now_s, frame_id, stamp_ns, &poses),
             Input::JointState { names, positions, velocities } => {
-                self.joint_state(now_s, &names, &positions, &velocities)
+                match MeasuredJoints::read(&self.robot, now_s, &names, &positions, &velocities) {
+                    Ok(Some(joints)) => self.joints = Some(joints),
+                    Ok(None) => {}
+                    Err(why) => return vec![Output::Warn(format!("a joint state is ignored: {why}"))],
+                }
+                Vec::new()
             }
             Input::Replan if self.last.is_none() => vec![reply(false, "there are no poses to plan")],
             Input::Replan => {
@@ -235,31 +228,8 @@ impl Session {
 
     /// Where the robot stands, if anything says so; a refusal where that cannot be relied on.
     fn present_state(&self, now_s: f64) -> Result<Option<Vec<f64>>, Refusal> {
-        let Some(joints) = &self.joints else { return Ok(None) };
-        let (age_s, allowed_s) = (now_s - joints.at_s, self.config.joint_state_max_age_s);
-        if age_s > allowed_s {
-            return Err(Refusal::StaleJointState { age_s, allowed_s });
-        }
-        let moving = |velocity: &f64| velocity.abs() > STANDSTILL_PER_S;
-        if let Some(velocities) = &joints.velocities
-            && let Some(joint) = velocities.iter().position(moving)
-        {
-            let (joint, velocity) = (self.joint_name(joint), velocities[joint]);
-            return Err(Refusal::Moving { joint, velocity });
-        }
-        Ok(Some(joints.positions.clone()))
-    }
-
-    /// The refusal that is due where the robot left the place from which it was planned.
-    fn moved_since(&self, start: Option<&Vec<f64>>) -> Option<Refusal> {
-        let (start, joints) = (start?, self.joints.as_ref()?);
-        let moved = |joint: &usize| (joints.positions[*joint] - start[*joint]).abs() > STANDSTILL;
-        let joint = (0..start.len()).find(moved)?;
-        Some(Refusal::MovedMeanwhile { joint: self.joint_name(joint), by: joints.positions[joint] - start[joint] })
-    }
-
-    fn joint_name(&self, joint: usize) -> String {
-        self.robot.chain.joint_names()[joint].clone()
+        let standing = |joints: &MeasuredJoints| joints.standing(&self.robot, now_s, self.config.joint_state_max_age_s);
+        self.joints.as_ref().map(standing).transpose()
     }
 
     fn publish(&mut self, request: Request, result: Result<Plan, Refusal>) -> Output {
@@ -275,7 +245,8 @@ impl Session {
         let mut outputs = Vec::new();
         if outcome.generation == self.generation {
             let Outcome { request, result, .. } = *outcome;
-            let moved = self.moved_since(request.start.as_ref());
+            let moved = |start| self.joints.as_ref()?.moved_from(&self.robot, start);
+            let moved = request.start.as_deref().and_then(moved);
             let result = result.and_then(|plan| moved.map_or(Ok(plan), Err));
             outputs.push(self.publish(request, result));
         } else {
@@ -285,28 +256,6 @@ impl Session {
             outputs.extend(self.request_plan(now_s));
         }
         outputs
-    }
-
-    /// Keeps the state of this robot's joints, by name. A message that lacks some of them belongs to something else.
-    fn joint_state(&mut self, now_s: f64, names: &[String], positions: &[f64], velocities: &[f64]) -> Vec<Output> {
-        let ignored = |why: String| vec![Output::Warn(format!("a joint state is ignored: {why}"))];
-        let [n, p, v] = [names.len(), positions.len(), velocities.len()];
-        if n != p || (v != 0 && v != n) {
-            return ignored(format!("it has {n} names, {p} positions and {v} velocities"));
-        }
-        let place = |joint: &String| names.iter().position(|name| name == joint);
-        let Some(places) = self.robot.chain.joint_names().iter().map(place).collect::<Option<Vec<_>>>() else {
-            return Vec::new();
-        };
-        let ours = |values: &[f64]| places.iter().map(|&i| values[i]).collect::<Vec<_>>();
-        let (positions, velocities) = (ours(positions), (v != 0).then(|| ours(velocities)));
-        let mut numbers = positions.iter().chain(velocities.iter().flatten());
-        if let Some(bad) = numbers.position(|x| !x.is_finite()) {
-            let joint = self.joint_name(bad % positions.len());
-            return ignored(format!("{joint} is not a finite number"));
-        }
-        self.joints = Some(MeasuredJoints { at_s: now_s, positions, velocities });
-        Vec::new()
     }
 }
 
