@@ -7,7 +7,7 @@ use crate::refusal::Refusal;
 /// A joint slower than this stands, in rad/s or m/s: above the noise of velocity estimates, below any motion on purpose.
 const STANDSTILL_PER_S: f64 = 0.01;
 /// A joint that moved by less than this stood still, in rad or m: above encoder noise, and small enough for a controller to take up.
-const STANDSTILL: f64 = 0.002;
+pub(crate) const STANDSTILL: f64 = 0.002;
 
 /// The robot's joints in its own order, as they were last measured.
 #[derive(Debug, Clone)]

@@ -6,6 +6,7 @@ use reorder::{Ordering, Topology, order_poses};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, SplineError, centripetal_knots};
 
 use crate::config::Config;
+use crate::joints::STANDSTILL;
 use crate::refusal::Refusal;
 
 /// How much farther than the path tolerance the final trajectory may pass from an input pose: the tolerance bounds the joint
@@ -73,7 +74,11 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
     };
     let path = follow(robot, &spline, start.as_ref(), &config.path).map_err(at_fault)?;
     let timed = time_path(robot, &path, &config.timing).map_err(at_fault)?;
-    let (trajectory, approach_s) = with_approach(robot, config, start.as_ref(), &timed).map_err(at_fault)?;
+    let (trajectory, approach_s) = match &start {
+        Some(start) if config.approach => with_approach(robot, config, start, &timed).map_err(at_fault)?,
+        Some(start) => (at_first_pose(robot, start, timed.trajectory.clone())?, 0.0),
+        None => (timed.trajectory.clone(), 0.0),
+    };
 
     let pose_times_s = times_by_input(&ordering, &distinct, &timed.knot_times_s, approach_s);
     let (pose_error_max_m, pose_error_max_rad) = accuracy(robot, config, poses, &trajectory, &pose_times_s)?;
@@ -156,14 +161,25 @@ fn interpolate(poses: &[Pose], distinct: &[usize], config: &Config, topology: To
     })
 }
 
-/// The path's trajectory, led up to by a straight joint move from the start state where that is elsewhere.
+/// The trajectory itself, where the robot stands at its first point already: it would begin with a jump otherwise.
+fn at_first_pose(robot: &Robot, start: &DVector<f64>, trajectory: JointTrajectory) -> Result<JointTrajectory, Refusal> {
+    let away = |joint: usize| trajectory.points[0].positions[joint] - start[joint];
+    match (0..start.len()).find(|&joint| away(joint).abs() > STANDSTILL) {
+        None => Ok(trajectory),
+        Some(joint) => {
+            let name = robot.chain.joint_names()[joint].clone();
+            Err(Refusal::NotAtFirstPose { joint: name, away: away(joint) })
+        }
+    }
+}
+
+/// The path's trajectory, led up to by a straight joint move from the start state.
 fn with_approach(
     robot: &Robot,
     config: &Config,
-    start: Option<&DVector<f64>>,
+    start: &DVector<f64>,
     timed: &TimedPath,
 ) -> Result<(JointTrajectory, f64), ManipulatorError> {
-    let (Some(start), true) = (start, config.approach) else { return Ok((timed.trajectory.clone(), 0.0)) };
     let first = DVector::from_column_slice(&timed.trajectory.points[0].positions);
     let mut whole = rest_to_rest(robot, start, &first, &config.timing)?;
     let approach_s = whole.points[whole.points.len() - 1].time_s;

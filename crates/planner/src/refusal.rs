@@ -95,6 +95,14 @@ pub enum Refusal {
         /// Input index of the pose concerned.
         input_pose: Option<usize>,
     },
+    /// The robot stands elsewhere than the trajectory begins, and may not be led there.
+    #[error("{joint} stands {away:.4} rad (or m) from the first pose, and approach is off")]
+    NotAtFirstPose {
+        /// Name of the joint.
+        joint: String,
+        /// How far it would have to jump, in rad or m.
+        away: f64,
+    },
     /// The planned tool path misses a pose by more than the tolerance.
     #[error(
         "the planned path passes input pose {input_pose} at {error_m:.2e} m and {error_rad:.2e} rad, more than the tolerance"

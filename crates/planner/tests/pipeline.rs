@@ -119,6 +119,22 @@ fn plan_with(config: &Config, request: &Request) -> Result<Plan, Refusal> {
     plan(&robot(), config, request)
 }
 
+/// With the approach off, a robot that stands elsewhere would have to jump; one that stands there is planned from there.
+#[test]
+fn without_an_approach_the_robot_must_stand_at_the_first_pose() {
+    let config = Config { approach: false, ..Config::default() };
+    let recording = recording("lasa_sine");
+    let refusal = plan_with(&config, &request(&recording, Some(&HOME))).unwrap_err();
+    assert!(matches!(refusal, Refusal::NotAtFirstPose { .. }), "{refusal}");
+    let (_, approached) = planned("lasa_sine", Some(&HOME));
+    let there: Vec<f64> = approached.trajectory.at(approached.approach_s)[0].iter().copied().collect();
+    let plan = plan_with(&config, &request(&recording, Some(&there))).unwrap();
+    assert_eq!(plan.approach_s, 0.0);
+    for (q, start) in plan.trajectory.points[0].positions.iter().zip(&there) {
+        assert!((q - start).abs() < 1e-6, "inverse kinematics solves to 1e-9");
+    }
+}
+
 /// Planning the same twice gives the same bits.
 #[test]
 fn plans_repeat_bit_for_bit() {
