@@ -276,3 +276,7 @@ fn turned(segment: &RotationSegment, h: f64) -> f64 {
 #[cfg(test)]
 #[path = "pose_spline_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "pose_spline_edge_tests.rs"]
+mod edge_tests;
