@@ -11,7 +11,7 @@ pub(crate) struct BlockTridiagonal {
     pub(crate) diagonal: Vec<Matrix3<f64>>,
     /// Row i, column i+1; the last entry is unused.
     pub(crate) upper: Vec<Matrix3<f64>>,
-    /// Row 0, column n−1 and row n−1, column 0. Needs n ≥ 3 (for n = 2 add them to `upper[0]` and `lower[1]`).
+    /// Row 0, column n−1 and row n−1, column 0. Needs n ≥ 3, as closed curves have.
     pub(crate) corners: Option<(Matrix3<f64>, Matrix3<f64>)>,
 }
 

@@ -14,9 +14,13 @@ use crate::twist::Twist;
 /// How close to half a turn two successive rotations may come, in rad. Nearer than that rounding would choose the side.
 pub const HALF_TURN_MARGIN_RAD: f64 = 1e-9;
 
-/// By how much the angle that a segment turns through may exceed the angle between its two rotations, in rad. More means that
-/// the curve winds, which very uneven knots can cause.
+/// By how much the angle that a segment turns through may exceed the angle between its two rotations at most, in rad. More
+/// means that the curve winds, which very uneven knots can cause.
 pub const WINDING_BOUND_RAD: f64 = PI;
+
+/// By how many times the largest step near a segment (its own or a neighbour's) its length may exceed its own step. A smooth
+/// curve exceeds it by per cents, one round a sharp corner by a fraction of the step, one that winds or overshoots by several.
+const DETOUR: f64 = 2.0;
 
 /// What holds at the ends of a [`PoseSpline`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -96,6 +100,23 @@ pub enum SplineError {
         /// Angle between the two poses, in rad.
         difference_rad: f64,
     },
+    /// The spline goes much farther than the positions between which it leads.
+    #[error(
+        "between poses {from} and {to} the spline goes {travelled_m:.3e} m for a distance of {distance_m:.3e} m: the knots are too uneven"
+    )]
+    Overshoot {
+        /// First pose of the pair.
+        from: usize,
+        /// Second pose of the pair.
+        to: usize,
+        /// Length of the curve, in m.
+        travelled_m: f64,
+        /// Distance of the two poses, in m.
+        distance_m: f64,
+    },
+    /// A given end twist is not finite.
+    #[error("an end twist has a component that is not a finite number")]
+    NonFiniteTwist,
 }
 
 /// A pose with the motion through it, per unit of the curve's parameter. Everything but the pose is in the body (tool) frame.
@@ -169,6 +190,11 @@ impl PoseSpline {
                 (EndRates::Clamped(velocities), EndRates::Clamped([start.angular, end.angular]))
             }
         };
+        if let Ends::Clamped { start, end } = ends
+            && !start.to_vector().iter().chain(end.to_vector().iter()).all(|x| x.is_finite())
+        {
+            return Err(SplineError::NonFiniteTwist);
+        }
         let solve = |displacements: &[Vector3<f64>], ends, chain| {
             Problem { displacements, lengths: &lengths, ends, chain }
                 .solve()
@@ -186,13 +212,45 @@ impl PoseSpline {
         let rotations: Vec<_> = (0..segments)
             .map(|i| RotationSegment::new(&poses[i].rotation, turns[i], lengths[i], ends_of(&rates, i)))
             .collect();
-        for (i, segment) in rotations.iter().enumerate() {
-            let (turned_rad, difference_rad) = (turned(segment, lengths[i]), turns[i].norm());
-            if turned_rad > difference_rad + WINDING_BOUND_RAD {
-                return Err(SplineError::Winding { from: i, to: (i + 1) % poses.len(), turned_rad, difference_rad });
+        let spline = Self { knots: knots.to_vec(), positions, rotations, closed };
+        spline.refuse_detours(poses.len(), &steps, &turns)?;
+        Ok(spline)
+    }
+
+    /// Refuses segments that go much farther than the poses between which they lead.
+    fn refuse_detours(&self, poses: usize, steps: &[Vector3<f64>], turns: &[Vector3<f64>]) -> Result<(), SplineError> {
+        for i in 0..steps.len() {
+            let [travelled_m, turned_rad] = self.lengths(i);
+            let largest_near = |parts: &[Vector3<f64>]| {
+                let near = i.saturating_sub(1)..(i + 2).min(parts.len());
+                parts[near].iter().map(|part| part.norm()).fold(0.0, f64::max)
+            };
+            let (distance_m, difference_rad) = (steps[i].norm(), turns[i].norm());
+            let (from, to) = (i, (i + 1) % poses);
+            let allowed_rad = (DETOUR * largest_near(turns)).min(WINDING_BOUND_RAD);
+            // Rounding of what was subtracted to get the parts.
+            let slack = 1e-9;
+            // Written so that NaN is refused.
+            let turns_enough = turned_rad <= difference_rad + allowed_rad + slack;
+            if !turns_enough {
+                return Err(SplineError::Winding { from, to, turned_rad, difference_rad });
+            }
+            let goes_straight = travelled_m <= distance_m + DETOUR * largest_near(steps) + slack;
+            if !goes_straight {
+                return Err(SplineError::Overshoot { from, to, travelled_m, distance_m });
             }
         }
-        Ok(Self { knots: knots.to_vec(), positions, rotations, closed })
+        Ok(())
+    }
+
+    /// Length of a segment's position and angle of its rotation, by the midpoint rule. Sixteen points measure to a few per
+    /// cent what the bounds must tell: whether the curve goes somewhere else.
+    fn lengths(&self, segment: usize) -> [f64; 2] {
+        const POINTS: usize = 16;
+        let step = (self.knots[segment + 1] - self.knots[segment]) / POINTS as f64;
+        let twist = |k: usize| self.in_segment(segment, (k as f64 + 0.5) * step).twist;
+        let add = |[p, r]: [f64; 2], twist: Twist| [p + twist.linear.norm() * step, r + twist.angular.norm() * step];
+        (0..POINTS).map(twist).fold([0.0; 2], add)
     }
 
     /// The parameter at every pose, increasing; on a closed curve also the one at which the first pose is reached again.
@@ -263,14 +321,6 @@ fn check(poses: &[Pose], knots: &[f64], closed: bool) -> Result<(), SplineError>
         }
     }
     Ok(())
-}
-
-/// ∫‖ω‖dt over a segment by the midpoint rule. Sixteen points measure to a few per cent what the bound must tell: whether the
-/// curve makes an extra half turn.
-fn turned(segment: &RotationSegment, h: f64) -> f64 {
-    const POINTS: usize = 16;
-    let step = h / POINTS as f64;
-    (0..POINTS).map(|k| segment.at((k as f64 + 0.5) * step).rate.norm() * step).sum()
 }
 
 #[cfg(test)]

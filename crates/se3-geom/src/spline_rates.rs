@@ -88,7 +88,6 @@ impl Problem<'_> {
                 system.diagonal[knot] += Matrix3::identity() * (4.0 / h);
                 *row += self.displacements[segment] * (6.0 / (h * h));
                 match knot {
-                    0 if n == 2 => system.upper[0] += block,
                     0 => corners.0 += block,
                     _ => system.lower[knot] += block,
                 }
@@ -100,14 +99,12 @@ impl Problem<'_> {
                 *row += self.displacements[segment] * (6.0 / (h * h));
                 if knot + 1 < n {
                     system.upper[knot] += block;
-                } else if n == 2 {
-                    system.lower[knot] += block;
                 } else {
                     corners.1 += block;
                 }
             }
         }
-        if matches!(self.ends, EndRates::Periodic) && n > 2 {
+        if matches!(self.ends, EndRates::Periodic) {
             system.corners = Some(corners);
         }
         (system, right)
@@ -142,7 +139,7 @@ impl Problem<'_> {
     /// The greatest relative defect that was left, where Newton with homotopy does not come to a solution.
     pub(crate) fn solve(&self) -> Result<Vec<Vector3<f64>>, f64> {
         let (system, right) = self.linear_system();
-        let start = system.solve(&right).ok_or(f64::INFINITY)?;
+        let start = system.solve(&right).filter(|rates| finite(rates)).ok_or(f64::INFINITY)?;
         if self.chain == Chain::Positions {
             return Ok(start);
         }
@@ -172,13 +169,13 @@ impl Problem<'_> {
         let evaluate = |rates: &[Vector3<f64>]| {
             let mut jacobian = system.clone();
             let mut defect = multiply(system, rates);
-            let mut scale: Vec<f64> = right.iter().map(|r| r.norm()).collect();
-            for (k, (d, r)) in defect.iter_mut().zip(right).enumerate() {
-                scale[k] = scale[k].max(system.diagonal[k].norm() * rates[k].norm()).max(f64::MIN_POSITIVE);
+            // What a row's defect is a rounding of: the greatest term that it is the sum of.
+            let scale = largest_terms(system, rates, right);
+            for (d, r) in defect.iter_mut().zip(right) {
                 *d -= r;
             }
             self.add_quadratic(rates, weight, &mut defect, &mut jacobian.diagonal);
-            let worst = defect.iter().zip(&scale).map(|(d, s)| d.norm() / s).fold(0.0, f64::max);
+            let worst = greatest(defect.iter().zip(&scale).map(|(d, s)| d.norm() / s));
             (defect, jacobian, worst)
         };
         let (mut defect, mut jacobian, mut worst) = evaluate(&rates);
@@ -206,6 +203,27 @@ impl Problem<'_> {
         }
         if worst < ACCEPTABLE { Ok(rates) } else { Err(worst) }
     }
+}
+
+fn finite(rates: &[Vector3<f64>]) -> bool {
+    rates.iter().all(|rate| rate.iter().all(|x| x.is_finite()))
+}
+
+/// The maximum, which is NaN where any value is: what is not a number is never small enough.
+fn greatest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |max, value| if value.is_nan() || value > max { value } else { max })
+}
+
+fn largest_terms(system: &BlockTridiagonal, x: &[Vector3<f64>], right: &[Vector3<f64>]) -> Vec<f64> {
+    let n = x.len();
+    let corners = system.corners.unwrap_or_else(|| (Matrix3::zeros(), Matrix3::zeros()));
+    let term = |block: &Matrix3<f64>, x: &Vector3<f64>| block.norm() * x.norm();
+    let row = |i: usize| {
+        let before = if i > 0 { term(&system.lower[i], &x[i - 1]) } else { term(&corners.0, &x[n - 1]) };
+        let after = if i + 1 < n { term(&system.upper[i], &x[i + 1]) } else { term(&corners.1, &x[0]) };
+        before.max(after).max(term(&system.diagonal[i], &x[i])).max(right[i].norm()).max(f64::MIN_POSITIVE)
+    };
+    (0..n).map(row).collect()
 }
 
 fn multiply(system: &BlockTridiagonal, x: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
