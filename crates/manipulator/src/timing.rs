@@ -32,7 +32,11 @@ impl Default for TimingOptions {
 }
 
 impl TimingOptions {
-    pub(crate) fn limits(&self, robot: &Robot) -> Result<Limits> {
+    /// Whether every option is in its range.
+    ///
+    /// # Errors
+    /// [`ManipulatorError::InvalidOption`].
+    pub fn check(&self) -> Result<()> {
         let invalid = |name, value, must_be| Err(ManipulatorError::InvalidOption { name, value, must_be });
         if !(self.rate_hz >= 1.0 && self.rate_hz <= 10_000.0) {
             return invalid("rate_hz", self.rate_hz, "from 1 to 10000");
@@ -47,6 +51,11 @@ impl TimingOptions {
                 return invalid(name, value, "above 0 and at most 1");
             }
         }
+        Ok(())
+    }
+
+    pub(crate) fn limits(&self, robot: &Robot) -> Result<Limits> {
+        self.check()?;
         let mut limits = robot.limits.clone();
         limits.velocity *= self.velocity_scale;
         limits.acceleration *= self.acceleration_scale;

@@ -36,6 +36,15 @@ pub enum Refusal {
         /// How many were given.
         given: usize,
     },
+    /// Nothing says where the robot stands.
+    #[error("no joint state with all joints of {robot} has arrived: where the robot stands is unknown")]
+    NoJointState {
+        /// Name of the robot.
+        robot: String,
+    },
+    /// The planner itself failed.
+    #[error("the planner failed: {0}; please report this")]
+    Internal(String),
     /// The robot was not heard of for too long.
     #[error(
         "the last joint state is {age_s:.1} s old, more than the {allowed_s} s allowed: where the robot stands is unknown"

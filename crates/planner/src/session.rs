@@ -2,7 +2,8 @@
 //!
 //! Planning takes seconds and must not block whoever receives messages, so the session never plans itself: it hands out a
 //! [`Job`], which the shell runs wherever it likes and brings back as [`Input::Finished`]. While a job runs, the newest poses
-//! wait; older waiting ones are superseded and counted. What was cleared meanwhile is not published.
+//! wait; older waiting ones are superseded, and what comes of the running job is discarded: a robot must not set out along poses
+//! when newer ones are known. The same poses again change nothing. What was cleared meanwhile is not published either.
 //!
 //! Where joint states arrive, a trajectory starts exactly where the robot stands; a robot that moves, that was not heard of for a
 //! while, or that moved while its trajectory was planned gets a refusal instead of a jump.
@@ -69,6 +70,8 @@ pub enum Output {
         /// One sentence.
         message: String,
     },
+    /// Withdraw what was published: it no longer holds.
+    Withdraw,
     /// Something that a person should know; one sentence.
     Warn(String),
 }
@@ -103,7 +106,7 @@ pub struct Counters {
     pub planned: u64,
     /// Refusals published.
     pub refused: u64,
-    /// Outcomes dropped because poses were cleared or replaced by invalid ones meanwhile.
+    /// Outcomes dropped because poses were cleared or replaced meanwhile.
     pub discarded: u64,
 }
 
@@ -121,6 +124,11 @@ pub struct Session {
 }
 
 impl Job {
+    /// The outcome of a job that was lost on the way, so that the session does not wait for it for ever.
+    pub fn lost(self, why: String) -> Box<Outcome> {
+        Box::new(Outcome { generation: self.generation, request: self.request, result: Err(Refusal::Internal(why)) })
+    }
+
     /// Plans. Pure and possibly slow.
     pub fn run(self) -> Box<Outcome> {
         let result = plan(&self.robot, &self.config, &self.request);
@@ -175,7 +183,7 @@ impl Session {
                 self.last = None;
                 self.waiting = false;
                 self.generation += 1;
-                vec![reply(true, "poses and results are forgotten")]
+                vec![Output::Withdraw, reply(true, "poses and results are forgotten")]
             }
             Input::Finished(outcome) => self.finished(now_s, outcome),
         }
@@ -185,14 +193,22 @@ impl Session {
     /// not be answered with a motion through something older.
     fn poses(&mut self, now_s: f64, frame_id: String, stamp_ns: i64, raw: &[RawPose]) -> Vec<Output> {
         self.counters.received += 1;
-        self.counters.superseded += u64::from(self.waiting);
         let checked = raw.iter().enumerate().map(|(input_pose, raw)| {
             pose_from_xyzw(raw.position, raw.quaternion_xyzw)
                 .map_err(|reason| Refusal::InvalidPose { input_pose, reason })
         });
         match checked.collect::<Result<Vec<_>, _>>() {
             Ok(poses) => {
-                self.last = Some(Request { frame_id, stamp_ns, poses, start: None });
+                let request = Request { frame_id, stamp_ns, poses, start: None };
+                let same = |last: &Request| last.frame_id == request.frame_id && last.poses == request.poses;
+                if self.running && !self.waiting && self.last.as_ref().is_some_and(same) {
+                    // A publisher that repeats itself asks for nothing new, and must not keep its own plan from ending.
+                    return Vec::new();
+                }
+                self.last = Some(request);
+                // A motion through older poses is not wanted any more.
+                self.generation += u64::from(self.running);
+                self.counters.superseded += u64::from(self.waiting);
                 self.request_plan(now_s)
             }
             Err(refusal) => {
@@ -228,8 +244,11 @@ impl Session {
 
     /// Where the robot stands, if anything says so; a refusal where that cannot be relied on.
     fn present_state(&self, now_s: f64) -> Result<Option<Vec<f64>>, Refusal> {
-        let standing = |joints: &MeasuredJoints| joints.standing(&self.robot, now_s, self.config.joint_state_max_age_s);
-        self.joints.as_ref().map(standing).transpose()
+        let Some(joints) = &self.joints else {
+            let unknown = Refusal::NoJointState { robot: self.robot.name.clone() };
+            return if self.config.require_joint_state { Err(unknown) } else { Ok(None) };
+        };
+        joints.standing(&self.robot, now_s, self.config.joint_state_max_age_s).map(Some)
     }
 
     fn publish(&mut self, request: Request, result: Result<Plan, Refusal>) -> Output {
@@ -245,9 +264,15 @@ impl Session {
         let mut outputs = Vec::new();
         if outcome.generation == self.generation {
             let Outcome { request, result, .. } = *outcome;
-            let moved = |start| self.joints.as_ref()?.moved_from(&self.robot, start);
-            let moved = request.start.as_deref().and_then(moved);
-            let result = result.and_then(|plan| moved.map_or(Ok(plan), Err));
+            // The robot must still stand where the trajectory begins, whatever was known when planning started.
+            let result = result.and_then(|plan| {
+                let begin = &plan.trajectory.points[0].positions;
+                self.present_state(now_s)?;
+                match self.joints.as_ref().and_then(|joints| joints.moved_from(&self.robot, begin)) {
+                    Some(moved) => Err(moved),
+                    None => Ok(plan),
+                }
+            });
             outputs.push(self.publish(request, result));
         } else {
             self.counters.discarded += 1;

@@ -9,8 +9,10 @@ use planner::{Config, Input, Job, Outcome, Output, RawPose, Refusal, Report, Ses
 const NOW_S: f64 = 10.0;
 const HOME: [f64; 6] = [-1.57, -1.57, 1.57, -1.57, -1.57, 0.0];
 
+/// A session that nothing has told where the robot stands, and that plans all the same.
 fn session() -> Session {
-    Session::new(Robot::shipped("ur5e").unwrap(), Config::default())
+    let config = Config { require_joint_state: false, ..Config::default() };
+    Session::new(Robot::shipped("ur5e").unwrap(), config)
 }
 
 /// Ten poses on a short line in front of the home pose, in no order.
@@ -52,6 +54,7 @@ fn kinds(outputs: &[Output]) -> Vec<String> {
             format!("publish {} {what}", outcome.request.stamp_ns)
         }
         Output::Reply { success, .. } => format!("reply {success}"),
+        Output::Withdraw => "withdraw".to_owned(),
         Output::Warn(_) => "warn".to_owned(),
     };
     outputs.iter().map(kind).collect()
@@ -84,25 +87,74 @@ fn poses_are_planned_and_published() {
     assert_eq!(session.counters().planned, 1);
 }
 
+/// `line()` shifted, so that it is another request.
+fn shifted(by_m: f64) -> Vec<RawPose> {
+    let mut raw = line();
+    raw.iter_mut().for_each(|pose| pose.position[2] += by_m);
+    raw
+}
+
+/// A robot must not set out along older poses when newer ones are known.
 #[test]
-fn the_newest_poses_wait_while_a_job_runs_and_older_ones_are_counted() {
+fn newer_poses_discard_the_running_plan_and_replace_waiting_ones() {
+    let mut session = session();
+    let job = only_job(session.handle(NOW_S, poses(line(), 1)));
+    assert!(session.handle(NOW_S, poses(shifted(0.01), 2)).is_empty());
+    assert!(session.handle(NOW_S, poses(shifted(0.02), 3)).is_empty());
+    let next = only_job(session.handle(NOW_S, Input::Finished(job.run())));
+    assert_eq!(only_outcome(session.handle(NOW_S, Input::Finished(next.run()))).request.stamp_ns, 3);
+    let counters = session.counters();
+    assert_eq!((counters.received, counters.superseded, counters.discarded, counters.planned), (3, 1, 1, 1));
+}
+
+#[test]
+fn the_same_poses_again_do_not_keep_their_plan_from_ending() {
     let mut session = session();
     let job = only_job(session.handle(NOW_S, poses(line(), 1)));
     assert!(session.handle(NOW_S, poses(line(), 2)).is_empty());
-    assert!(session.handle(NOW_S, poses(line(), 3)).is_empty());
-    let outputs = session.handle(NOW_S, Input::Finished(job.run()));
-    assert_eq!(kinds(&outputs), ["publish 1 plan", "run"]);
-    let Some(Output::Run(next)) = outputs.into_iter().nth(1) else { panic!() };
-    assert_eq!(only_outcome(session.handle(NOW_S, Input::Finished(next.run()))).request.stamp_ns, 3);
-    let counters = session.counters();
-    assert_eq!((counters.received, counters.superseded, counters.planned), (3, 1, 2));
+    assert_eq!(kinds(&session.handle(NOW_S, Input::Finished(job.run()))), ["publish 1 plan"]);
+}
+
+#[test]
+fn a_lost_job_is_refused_and_does_not_block_the_next() {
+    let mut session = session();
+    let job = only_job(session.handle(NOW_S, poses(line(), 1)));
+    let refused = only_refusal(session.handle(NOW_S, Input::Finished(job.lost("out of luck".into()))));
+    assert_eq!(refused, "the planner failed: out of luck; please report this");
+    only_job(session.handle(NOW_S, poses(line(), 2)));
+}
+
+/// Not knowing where the robot stands is a reason not to move it, at the start and at the end of planning.
+#[test]
+fn a_session_that_requires_a_joint_state_refuses_without_one() {
+    let mut session = Session::new(Robot::shipped("ur5e").unwrap(), Config::default());
+    let refused = only_refusal(session.handle(NOW_S, poses(line(), 1)));
+    assert_eq!(refused, "no joint state with all joints of ur5e has arrived: where the robot stands is unknown");
+    let still = measured(&session, HOME, &[]);
+    session.handle(NOW_S, still);
+    let job = only_job(session.handle(NOW_S, poses(line(), 2)));
+    let refused = only_refusal(session.handle(NOW_S + 9.0, Input::Finished(job.run())));
+    assert!(refused.starts_with("the last joint state is 9.0 s old"), "{refused}");
+}
+
+/// Planned from the first pose because nothing was known; then the robot turns out to stand elsewhere.
+#[test]
+fn a_state_that_arrives_while_planning_is_compared_with_the_first_point() {
+    let mut session = session();
+    let job = only_job(session.handle(NOW_S, poses(line(), 1)));
+    let mut elsewhere = HOME;
+    elsewhere[0] += 0.5;
+    let there = measured(&session, elsewhere, &[]);
+    session.handle(NOW_S, there);
+    let refused = only_refusal(session.handle(NOW_S, Input::Finished(job.run())));
+    assert!(refused.contains("while the trajectory was planned"), "{refused}");
 }
 
 #[test]
 fn what_was_cleared_is_not_published() {
     let mut session = session();
     let job = only_job(session.handle(NOW_S, poses(line(), 1)));
-    assert_eq!(kinds(&session.handle(NOW_S, Input::Clear)), ["reply true"]);
+    assert_eq!(kinds(&session.handle(NOW_S, Input::Clear)), ["withdraw", "reply true"]);
     assert!(session.handle(NOW_S, Input::Finished(job.run())).is_empty());
     assert_eq!(session.counters().discarded, 1);
     assert_eq!(kinds(&session.handle(NOW_S, Input::Replan)), ["reply false"]);
@@ -162,7 +214,7 @@ fn a_robot_that_moves_or_is_silent_gets_no_trajectory() {
     elsewhere[5] += 0.01;
     let moved = measured(&session, elsewhere, &[0.0; 6]);
     session.handle(NOW_S + 3.5, moved);
-    let refused = only_refusal(session.handle(NOW_S + 4.0, Input::Finished(job.run())));
+    let refused = only_refusal(session.handle(NOW_S + 3.6, Input::Finished(job.run())));
     assert_eq!(
         refused,
         "wrist_3_joint moved by 0.0100 rad (or m) while the trajectory was planned: plan again when the robot stands"

@@ -1,6 +1,7 @@
 //! `reorder order`.
 
 use clap::{Args, ValueEnum};
+use planner::Config;
 use planner::reorder::{Options, OrderError, Ordering, TopologyChoice, order, order_poses};
 use planner::se3_geom::{Pose, R2, R3, So3, xyzw_from_rotation};
 
@@ -16,7 +17,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     manifold: Option<Manifold>,
     /// How many metres count as much as one radian when poses are compared
-    #[arg(long, value_name = "L", default_value_t = 0.1)]
+    #[arg(long, value_name = "L", default_value_t = Config::default().metres_per_radian)]
     metres_per_radian: f64,
     /// How to order
     #[arg(long, default_value = "auto")]

@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     match &arguments.output {
         None => print(&trajectory_csv(&plan.trajectory)),
-        Some(path) if as_bag => write_bag(path, &plan, &robot.base_frame, &request.poses),
+        Some(path) if as_bag => write_bag(path, &plan, &robot.base_frame, &request),
         Some(path) => write_whole(path, &trajectory_csv(&plan.trajectory)),
     }?;
     if let Some(path) = &arguments.report {

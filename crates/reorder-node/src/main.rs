@@ -40,6 +40,10 @@ enum NodeError {
     Parameters(String),
     #[error("{file}: {reason}")]
     RobotFile { file: String, reason: String },
+    #[error("the middleware stopped: {0}")]
+    Middleware(String),
+    #[error("ROS 2 refuses the command line or a parameter file: {0}")]
+    CommandLine(String),
     #[error("ROS 2: {0}")]
     Ros(#[from] r2r::Error),
     #[error("{0}")]
