@@ -52,7 +52,9 @@ impl MeasuredJoints {
     /// [`Refusal::StaleJointState`], [`Refusal::Moving`].
     pub(crate) fn standing(&self, robot: &Robot, now_s: f64, allowed_s: f64) -> Result<Vec<f64>, Refusal> {
         let age_s = now_s - self.at_s;
-        if age_s > allowed_s {
+        // Written so that an age that is no number is too old.
+        let fresh = age_s <= allowed_s;
+        if !fresh {
             return Err(Refusal::StaleJointState { age_s, allowed_s });
         }
         let velocities = self.velocities.as_deref().unwrap_or_default();

@@ -110,11 +110,9 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
 
 fn start_state(robot: &Robot, request: &Request) -> Result<Option<DVector<f64>>, Refusal> {
     let Some(start) = &request.start else { return Ok(None) };
-    let expected = robot.chain.dof();
-    if start.len() != expected || !start.iter().all(|q| q.is_finite()) {
-        return Err(Refusal::StartState { robot: robot.name.clone(), expected, given: start.len() });
-    }
-    Ok(Some(DVector::from_column_slice(start)))
+    let start = DVector::from_column_slice(start);
+    robot.check_within_limits("the start state", &start).map_err(Refusal::StartState)?;
+    Ok(Some(start))
 }
 
 /// The order; an open one begins at the end nearer to the robot's tool, where the robot's state is known.

@@ -27,15 +27,8 @@ pub enum Refusal {
         reason: InvalidPose,
     },
     /// The start state does not fit the robot.
-    #[error("the start state has {given} joint positions, but {robot} has {expected} joints")]
-    StartState {
-        /// Name of the robot.
-        robot: String,
-        /// How many positions are needed.
-        expected: usize,
-        /// How many were given.
-        given: usize,
-    },
+    #[error("{0}")]
+    StartState(ManipulatorError),
     /// Nothing says where the robot stands.
     #[error("no joint state with all joints of {robot} has arrived: where the robot stands is unknown")]
     NoJointState {
@@ -134,7 +127,7 @@ impl Refusal {
     pub fn is_bad_input(&self) -> bool {
         matches!(
             self,
-            Self::Config(_) | Self::Frame { .. } | Self::InvalidPose { .. } | Self::StartState { .. } | Self::Order(_)
+            Self::Config(_) | Self::Frame { .. } | Self::InvalidPose { .. } | Self::StartState(_) | Self::Order(_)
         )
     }
 

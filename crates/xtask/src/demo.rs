@@ -267,9 +267,9 @@ fn print_table(runs: &[Value]) {
             number("/max_ratio/velocity", 1.0),
             number("/max_ratio/acceleration", 1.0),
             number("/max_ratio/jerk", 1.0),
-            number("/tracking_max_rad", 1e3),
-            number("/pose_error_max_m", 1e3),
-            number("/pose_error_max_rad", 1e3),
+            number("/tracking_max_rad", 1e6),
+            number("/pose_error_max_m", 1e6),
+            number("/pose_error_max_rad", 1e6),
             run["contacts"].to_string(),
         );
     }
