@@ -48,7 +48,7 @@ impl TimingOptions {
             ("jerk_scale", self.jerk_scale),
         ];
         for (name, value) in scales {
-            if !(value >= 1e-3 && value <= 1.0) {
+            if !(1e-3..=1.0).contains(&value) {
                 return invalid(name, value, "from 0.001 to 1");
             }
         }

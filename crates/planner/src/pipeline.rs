@@ -1,6 +1,6 @@
 //! Poses to trajectory, as one pure function.
 
-use manipulator::nalgebra::{self, DVector};
+use manipulator::nalgebra::DVector;
 use manipulator::{Audit, JointTrajectory, ManipulatorError, Robot, TimedPath, audit, follow, rest_to_rest, time_path};
 use reorder::{Ordering, Topology, order_poses};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, SplineError, centripetal_knots};
@@ -290,7 +290,7 @@ mod tests {
         let refused = accuracy(&robot, &config, &poses, &trajectory, &times);
         assert!(matches!(refused, Err(Refusal::Accuracy { input_pose: 1, .. })));
         poses[1] = there(times[1]);
-        let tilt = Pose::rotation(nalgebra::Vector3::x() * 3.0 * config.path.tolerance_rad);
+        let tilt = Pose::rotation(manipulator::nalgebra::Vector3::x() * 3.0 * config.path.tolerance_rad);
         poses[0] *= tilt;
         let refused = accuracy(&robot, &config, &poses, &trajectory, &times);
         assert!(matches!(refused, Err(Refusal::Accuracy { input_pose: 0, .. })));
