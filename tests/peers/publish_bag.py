@@ -1,10 +1,10 @@
-"""Publishes the PoseArray of a bag once, when somebody listens, and leaves when it has arrived.
+"""Publishes the PoseArray of a bag once, when somebody listens, and leaves when it has been answered.
 
     publish_bag.py tests/data/lasa_sine [--joint-state home | --positions Q1 ... Q6] [--subscribers N]
 
 With a joint state, sensor_msgs/JointState goes out at 50 Hz on /joint_states, from before the poses
-until they are acknowledged. Prints one JSON line. Exit codes: 0 acknowledged, 2 bad input, 3 nobody
-listened or acknowledged in time.
+until a report answers them, as a robot's driver would. Prints one JSON line. Exit codes: 0 answered,
+2 bad input, 3 nobody listened, acknowledged or answered in time.
 """
 
 import argparse
@@ -15,8 +15,9 @@ import time
 import rclpy
 from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion
 from rclpy.duration import Duration
-from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 
 from leave import leave
 from recorded_poses import read_pose_array
@@ -65,6 +66,11 @@ def publish(node, options, frame_id, rows, positions):
     deadline = time.monotonic() + options.timeout
     poses = node.create_publisher(PoseArray, TOPIC, QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE))
     states = JointStates(node, positions) if positions else None
+    answers = []
+    latched = QoSProfile(
+        depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
+    )
+    node.create_subscription(String, "/reorder/report", answers.append, latched)
 
     while poses.get_subscription_count() < options.subscribers or (states and not states.settled()):
         left = deadline - time.monotonic()
@@ -85,11 +91,15 @@ def publish(node, options, frame_id, rows, positions):
     message.header.stamp = node.get_clock().now().to_msg()
     listeners = poses.get_subscription_count()
     poses.publish(message)
-    while not poses.wait_for_all_acked(Duration(seconds=JOINT_STATE_PERIOD_S)):
+    answers.clear()
+    acknowledged = False
+    while not (acknowledged and answers):
         if time.monotonic() > deadline:
-            print(f"{TOPIC} was not acknowledged within {options.timeout:g} s.", file=sys.stderr)
+            what = "answered" if acknowledged else "acknowledged"
+            print(f"{TOPIC} was not {what} within {options.timeout:g} s.", file=sys.stderr)
             return 3
-        rclpy.spin_once(node, timeout_sec=0.0)
+        acknowledged = acknowledged or poses.wait_for_all_acked(Duration(seconds=0))
+        rclpy.spin_once(node, timeout_sec=JOINT_STATE_PERIOD_S)
     sent = states.sent if states else 0
     line = {"topic": TOPIC, "bag": options.bag, "frame_id": frame_id, "n_poses": len(rows)}
     print(json.dumps({**line, "subscribers": listeners, "joint_states": sent}), flush=True)

@@ -48,7 +48,26 @@ pub(crate) struct Peaks {
 
 /// Judges the trajectory that a controller would execute against the robot's limits. Numbers that are not finite fail every check.
 pub fn audit(robot: &Robot, trajectory: &JointTrajectory) -> Audit {
-    against(&robot.limits, trajectory)
+    if trajectory.joint_names == robot.chain.joint_names() {
+        return against(&robot.limits, trajectory);
+    }
+    // Judged joint by joint in order: under other names that would be somebody else's limits.
+    Audit { duration_s: trajectory.duration_s(), points: trajectory.points.len(), ..Audit::failed() }
+}
+
+impl Audit {
+    /// Of a trajectory that cannot be judged.
+    fn failed() -> Self {
+        Self {
+            limits_ok: false,
+            max_ratio: MaxRatio { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY },
+            position_margin: f64::NEG_INFINITY,
+            times_increase: false,
+            starts_and_ends_at_rest: false,
+            duration_s: 0.0,
+            points: 0,
+        }
+    }
 }
 
 pub(crate) fn against(limits: &Limits, trajectory: &JointTrajectory) -> Audit {
@@ -62,15 +81,8 @@ pub(crate) fn against(limits: &Limits, trajectory: &JointTrajectory) -> Audit {
         });
     let times_increase =
         complete && points[0].time_s == 0.0 && points.windows(2).all(|pair| pair[1].time_s > pair[0].time_s);
-    let mut audit = Audit {
-        limits_ok: false,
-        max_ratio: MaxRatio { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY },
-        position_margin: f64::NEG_INFINITY,
-        times_increase,
-        starts_and_ends_at_rest: false,
-        duration_s: trajectory.duration_s(),
-        points: points.len(),
-    };
+    let mut audit =
+        Audit { times_increase, duration_s: trajectory.duration_s(), points: points.len(), ..Audit::failed() };
     if !times_increase {
         return audit;
     }
@@ -101,7 +113,12 @@ pub(crate) fn peaks<'a>(
     interval: usize,
 ) -> impl Iterator<Item = Peaks> + 'a {
     trajectory.quintics(interval).enumerate().map(|(j, quintic)| {
-        let [position, velocity, acceleration, jerk] = quintic.ranges();
+        let ranges = quintic.ranges();
+        // Finite points can be so large that the polynomial between them overflows; nothing can be said of it then.
+        if !ranges.iter().all(|(low, high)| low.is_finite() && high.is_finite()) {
+            return Peaks { ratios: [f64::INFINITY; 3], margin: f64::NEG_INFINITY };
+        }
+        let [position, velocity, acceleration, jerk] = ranges;
         let peak = |(low, high): (f64, f64)| high.max(-low);
         Peaks {
             ratios: [

@@ -182,6 +182,30 @@ pub enum ManipulatorError {
         /// What it says.
         reason: String,
     },
+    /// A configuration is beyond a position limit.
+    #[error("{what}: {joint} is at {value:.4}, beyond its limits {lower:.4} to {upper:.4} (rad or m)")]
+    BeyondLimits {
+        /// What the configuration is.
+        what: &'static str,
+        /// The joint.
+        joint: String,
+        /// Its position in rad or m.
+        value: f64,
+        /// Lower limit.
+        lower: f64,
+        /// Upper limit.
+        upper: f64,
+    },
+    /// The trajectory would have more points than anybody could execute.
+    #[error("the trajectory would last {duration_s:.3e} s, which is more than {most} points at {rate_hz} a second")]
+    TooLong {
+        /// How long, in s.
+        duration_s: f64,
+        /// Published points per second.
+        rate_hz: f64,
+        /// Most points there may be.
+        most: usize,
+    },
     /// Slowing down did not make the trajectory legal; it is withheld.
     #[error(
         "the trajectory would break limits after every slowdown (velocity {velocity:.4}, acceleration {acceleration:.4}, jerk {jerk:.4} of the limit, position margin {position_margin:.2e}), so there is none"

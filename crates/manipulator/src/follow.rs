@@ -34,7 +34,11 @@ impl Default for PathOptions {
 }
 
 impl PathOptions {
-    fn check(&self) -> Result<()> {
+    /// Whether every option is in its range.
+    ///
+    /// # Errors
+    /// [`ManipulatorError::InvalidOption`].
+    pub fn check(&self) -> Result<()> {
         // Samples are solved to 1e-9: tolerances far above that can be met by refinement.
         let bounded = [
             ("tolerance_m", self.tolerance_m, 1e-7),

@@ -73,6 +73,10 @@ impl Quintic {
         ]
         .map(|(scale, polynomial, extremes)| {
             let values = extremes.iter().chain(&[0.0, 1.0]).map(|&u| evaluate(polynomial, u) * scale);
+            // A value that is no number must not vanish in a minimum.
+            if values.clone().any(f64::is_nan) {
+                return (f64::NAN, f64::NAN);
+            }
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
         })
     }

@@ -20,7 +20,7 @@ pub(crate) fn least_duration(distance: f64, velocity: f64, acceleration: f64, je
 /// quintics between its points are pieces of that quintic. Equal ends give a single point at rest.
 ///
 /// # Errors
-/// [`ManipulatorError`] for malformed configurations or options, or [`ManipulatorError::LimitsNotMet`] for an end beyond a limit.
+/// [`ManipulatorError`] for malformed configurations or options, [`ManipulatorError::BeyondLimits`] for an end beyond a limit.
 pub fn rest_to_rest(
     robot: &Robot,
     from: &DVector<f64>,
@@ -28,15 +28,15 @@ pub fn rest_to_rest(
     options: &TimingOptions,
 ) -> Result<JointTrajectory> {
     let limits = options.limits(robot)?;
-    robot.check_configuration("the start of the move", from)?;
-    robot.check_configuration("the end of the move", to)?;
+    robot.check_within_limits("the start of the move", from)?;
+    robot.check_within_limits("the end of the move", to)?;
     let distance = to - from;
     let least = (0..from.len())
         .map(|i| least_duration(distance[i].abs(), limits.velocity[i], limits.acceleration[i], limits.jerk[i]))
         .fold(0.0, f64::max);
     let sampling = Sampling { rate_hz: options.rate_hz, joint_names: robot.chain.joint_names() };
     // A part in ten thousand keeps rounding of the points below the limits.
-    let (steps, step_ns) = if least > 0.0 { sampling.steps(least * 1.0001) } else { (0, 0) };
+    let (steps, step_ns) = if least > 0.0 { sampling.steps(least * 1.0001)? } else { (0, 0) };
     let duration = Sampling::time(steps, step_ns);
     let points = (0..=steps)
         .map(|k| {

@@ -132,6 +132,22 @@ impl Robot {
         Ok(Self { name: description.name, chain, limits, preferred, base_frame, tool_frame })
     }
 
+    /// Whether `q` has a finite position for every joint, within its limits up to rounding; `what` names it in the error.
+    ///
+    /// # Errors
+    /// [`ManipulatorError::WrongSize`], [`ManipulatorError::NonFinite`], [`ManipulatorError::BeyondLimits`].
+    pub fn check_within_limits(&self, what: &'static str, q: &DVector<f64>) -> Result<()> {
+        self.check_configuration(what, q)?;
+        let Some(joint) = self.limits.first_violation(q) else { return Ok(()) };
+        Err(ManipulatorError::BeyondLimits {
+            what,
+            joint: self.chain.joint_names()[joint].clone(),
+            value: q[joint],
+            lower: self.limits.lower[joint],
+            upper: self.limits.upper[joint],
+        })
+    }
+
     pub(crate) fn check_configuration(&self, what: &'static str, q: &DVector<f64>) -> Result<()> {
         if q.len() != self.chain.dof() {
             return Err(ManipulatorError::WrongSize { what, expected: self.chain.dof(), given: q.len() });

@@ -1,5 +1,6 @@
 //! Points of a trajectory from a path and its speed.
 
+use crate::error::{ManipulatorError, Result};
 use crate::joint_path::JointPath;
 use crate::speed_profile::Smoothed;
 use crate::trajectory::{JointPoint, JointTrajectory};
@@ -9,13 +10,22 @@ pub(crate) struct Sampling<'a> {
     pub(crate) joint_names: &'a [String],
 }
 
+/// Most points of a trajectory: five hours at 100 a second. More is a mistake, and would exhaust the memory.
+const MOST_POINTS: usize = 2_000_000;
+
 impl Sampling<'_> {
     /// How many equal steps of whole nanoseconds, none longer than a period, make up at least `duration`; and their length in ns.
-    pub(crate) fn steps(&self, duration: f64) -> (usize, u64) {
+    pub(crate) fn steps(&self, duration: f64) -> Result<(usize, u64)> {
+        // Written so that NaN is too long.
+        let few_enough = duration * self.rate_hz < MOST_POINTS as f64;
+        if !few_enough {
+            let (duration_s, rate_hz) = (duration, self.rate_hz);
+            return Err(ManipulatorError::TooLong { duration_s, rate_hz, most: MOST_POINTS });
+        }
         // A duration of whole periods must not gain a step by rounding.
         let steps = ((duration * self.rate_hz - 1e-9).ceil() as usize).max(1);
         let step_ns = (duration * 1e9 / steps as f64 - 1e-6).ceil().max(1.0) as u64;
-        (steps, step_ns)
+        Ok((steps, step_ns))
     }
 
     /// Time of point `k` in s.
@@ -25,8 +35,16 @@ impl Sampling<'_> {
 }
 
 /// The path run through in `duration` (rounded up to whole steps), the profile's own duration stretched evenly.
-pub(crate) fn sample(path: &JointPath, profile: &Smoothed, duration: f64, sampling: &Sampling<'_>) -> JointTrajectory {
-    let (steps, step_ns) = sampling.steps(duration);
+///
+/// # Errors
+/// [`ManipulatorError::TooLong`].
+pub(crate) fn sample(
+    path: &JointPath,
+    profile: &Smoothed,
+    duration: f64,
+    sampling: &Sampling<'_>,
+) -> Result<JointTrajectory> {
+    let (steps, step_ns) = sampling.steps(duration)?;
     let stretch = Sampling::time(steps, step_ns) / profile.duration();
     let points = (0..=steps)
         .map(|k| {
@@ -48,5 +66,5 @@ pub(crate) fn sample(path: &JointPath, profile: &Smoothed, duration: f64, sampli
             }
         })
         .collect();
-    JointTrajectory { joint_names: sampling.joint_names.to_vec(), points }
+    Ok(JointTrajectory { joint_names: sampling.joint_names.to_vec(), points })
 }

@@ -15,13 +15,13 @@ use crate::trajectory::JointTrajectory;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TimingOptions {
-    /// Published points per second.
+    /// Published points per second, from 10 to 10,000.
     pub rate_hz: f64,
-    /// Part of the velocity limits to use, in (0, 1].
+    /// Part of the velocity limits to use, from 0.001 to 1.
     pub velocity_scale: f64,
-    /// Part of the acceleration limits to use, in (0, 1].
+    /// Part of the acceleration limits to use, from 0.001 to 1.
     pub acceleration_scale: f64,
-    /// Part of the jerk limits to use, in (0, 1].
+    /// Part of the jerk limits to use, from 0.001 to 1.
     pub jerk_scale: f64,
 }
 
@@ -32,10 +32,15 @@ impl Default for TimingOptions {
 }
 
 impl TimingOptions {
-    pub(crate) fn limits(&self, robot: &Robot) -> Result<Limits> {
+    /// Whether every option is in its range.
+    ///
+    /// # Errors
+    /// [`ManipulatorError::InvalidOption`].
+    pub fn check(&self) -> Result<()> {
         let invalid = |name, value, must_be| Err(ManipulatorError::InvalidOption { name, value, must_be });
-        if !(self.rate_hz >= 1.0 && self.rate_hz <= 10_000.0) {
-            return invalid("rate_hz", self.rate_hz, "from 1 to 10000");
+        // Below ten points a second the quintics between points leave the path by more than its tolerance.
+        if !(self.rate_hz >= 10.0 && self.rate_hz <= 10_000.0) {
+            return invalid("rate_hz", self.rate_hz, "from 10 to 10000");
         }
         let scales = [
             ("velocity_scale", self.velocity_scale),
@@ -43,10 +48,15 @@ impl TimingOptions {
             ("jerk_scale", self.jerk_scale),
         ];
         for (name, value) in scales {
-            if !(value > 0.0 && value <= 1.0) {
-                return invalid(name, value, "above 0 and at most 1");
+            if !(1e-3..=1.0).contains(&value) {
+                return invalid(name, value, "from 0.001 to 1");
             }
         }
+        Ok(())
+    }
+
+    pub(crate) fn limits(&self, robot: &Robot) -> Result<Limits> {
+        self.check()?;
         let mut limits = robot.limits.clone();
         limits.velocity *= self.velocity_scale;
         limits.acceleration *= self.acceleration_scale;
@@ -97,12 +107,19 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
     robot.check_configuration("the joint path", &path.at(path.domain().0)[0])?;
     let sampling = Sampling { rate_hz: options.rate_hz, joint_names: robot.chain.joint_names() };
     let travel = travel(path)?;
-    let (profile, second_order_duration_s) = if travel < TINY {
+    let simple = || {
         let profile = single_quintic(path, travel, &limits, 1.0 / options.rate_hz);
         let duration = profile.duration();
         (profile, duration)
+    };
+    let (profile, second_order_duration_s) = if travel < TINY {
+        simple()
     } else {
-        optimised(path, &limits, &sampling)?
+        match optimised(path, &limits, &sampling) {
+            // The solver gave up, about once in three hundred random paths. A slow trajectory is legal all the same.
+            Err(ManipulatorError::Timing { .. }) => simple(),
+            other => other?,
+        }
     };
     let trajectory = slowed_until_legal(path, &profile, &limits, &sampling)?;
     let stretch = trajectory.duration_s() / profile.duration();
@@ -111,9 +128,18 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
     Ok(TimedPath { trajectory, knot_times_s, audit, second_order_duration_s })
 }
 
+/// Places between two knots at which travel is measured.
+const TRAVEL_PARTS: usize = 8;
+
 /// The greatest way that any joint makes along the path, up and down counted.
 fn travel(path: &JointPath) -> Result<f64> {
-    let positions: Vec<_> = path.knots().iter().map(|&s| path.at(s)[0].clone()).collect();
+    // Between knots too, where a spline may swing out and come back.
+    let parts = |pair: &[f64]| {
+        let (from, to) = (pair[0], pair[1]);
+        (0..TRAVEL_PARTS).map(move |k| from + (to - from) * k as f64 / TRAVEL_PARTS as f64)
+    };
+    let parameters = path.knots().windows(2).flat_map(parts).chain([path.domain().1]);
+    let positions: Vec<_> = parameters.map(|s| path.at(s)[0].clone()).collect();
     let mut sum = positions[0].map(|_| 0.0);
     for pair in positions.windows(2) {
         sum += (&pair[1] - &pair[0]).abs();
@@ -151,7 +177,7 @@ fn optimised(path: &JointPath, limits: &Limits, sampling: &Sampling<'_>) -> Resu
             Err(_) if best.is_some() => break,
             Err(error) => return Err(error),
         };
-        let trajectory = sample(path, &profile, profile.duration(), sampling);
+        let trajectory = sample(path, &profile, profile.duration(), sampling)?;
         let slowdown = slowdown(&against(limits, &trajectory).max_ratio);
         let duration = profile.duration() * slowdown.max(1.0);
         if coarse && slowdown > TOO_COARSE {
@@ -237,7 +263,7 @@ fn slowed_until_legal(
     let mut duration = profile.duration();
     let mut last = None;
     for _ in 0..ATTEMPTS {
-        let trajectory = sample(path, profile, duration, sampling);
+        let trajectory = sample(path, profile, duration, sampling)?;
         let found = against(limits, &trajectory);
         if found.limits_ok {
             return Ok(trajectory);

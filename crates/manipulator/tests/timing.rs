@@ -163,7 +163,7 @@ fn rest_to_rest_is_the_quintic_at_its_limits() {
     assert_eq!(standing.points.len(), 1);
     assert!(audit(&robot, &standing).limits_ok);
     let beyond = DVector::from_element(6, 6.5);
-    assert!(matches!(rest_to_rest(&robot, &here, &beyond, &options), Err(ManipulatorError::LimitsNotMet { .. })));
+    assert!(matches!(rest_to_rest(&robot, &here, &beyond, &options), Err(ManipulatorError::BeyondLimits { .. })));
     let nan = DVector::from_element(6, f64::NAN);
     assert!(matches!(rest_to_rest(&robot, &nan, &here, &options), Err(ManipulatorError::NonFinite { .. })));
 }
@@ -221,4 +221,40 @@ fn a_path_of_nan_or_of_the_wrong_size_is_refused() {
         time_path(&robot, &path, &TimingOptions::default()),
         Err(ManipulatorError::WrongSize { expected: 6, given: 5, .. })
     ));
+}
+
+/// Points so large that the polynomial between them overflows, and joints under other names, are not legal.
+#[test]
+fn what_cannot_be_judged_does_not_pass_the_audit() {
+    let robot = Robot::shipped("ur5e").unwrap();
+    let from = DVector::from_element(6, -1.0);
+    let legal = rest_to_rest(&robot, &from, &from.add_scalar(0.2), &TimingOptions::default()).unwrap();
+    assert!(audit(&robot, &legal).limits_ok);
+    let middle = legal.points.len() / 2;
+    let huge = 1.7e308;
+    let mut position = legal.clone();
+    position.points[middle].positions[2] = huge;
+    let mut velocity = legal.clone();
+    velocity.points[middle].velocities[2] = huge;
+    let mut acceleration = legal.clone();
+    acceleration.points[middle].accelerations[2] = huge;
+    let mut reversed = legal.clone();
+    reversed.joint_names.reverse();
+    for wrong in [position, velocity, acceleration, reversed] {
+        let found = audit(&robot, &wrong);
+        assert!(!found.limits_ok && found.max_ratio.jerk > 1.0, "{found:?}");
+    }
+}
+
+/// A trajectory of hours at the highest rate is refused before memory is asked for.
+#[test]
+fn a_trajectory_of_too_many_points_is_refused() {
+    let mut robot = Robot::shipped("ur5e").unwrap();
+    robot.limits.velocity *= 1e-9;
+    let from = DVector::from_element(6, -1.0);
+    let refused = rest_to_rest(&robot, &from, &from.add_scalar(0.2), &TimingOptions::default()).unwrap_err();
+    assert!(matches!(refused, ManipulatorError::TooLong { .. }), "{refused}");
+    let beyond = DVector::from_element(6, 100.0);
+    let refused = rest_to_rest(&robot, &from, &beyond, &TimingOptions::default()).unwrap_err();
+    assert!(matches!(refused, ManipulatorError::BeyondLimits { .. }), "{refused}");
 }

@@ -20,6 +20,11 @@ pub struct Config {
     pub minimum_verdict: Verdict,
     /// Whether a trajectory may begin with a straight joint move from the present state to the first pose.
     pub approach: bool,
+    /// Whether a [`Session`](crate::Session) plans only when it knows where the robot stands. Otherwise a trajectory begins at the
+    /// first pose, wherever the robot is.
+    pub require_joint_state: bool,
+    /// A joint state older than this, in s, no longer says where the robot stands.
+    pub joint_state_max_age_s: f64,
     /// Accuracy of the joint path.
     pub path: PathOptions,
     /// Publishing rate and scaling of limits.
@@ -34,6 +39,8 @@ impl Default for Config {
             start: None,
             minimum_verdict: Verdict::Plausible,
             approach: true,
+            require_joint_state: true,
+            joint_state_max_age_s: 1.0,
             path: PathOptions::default(),
             timing: TimingOptions::default(),
         }
@@ -56,7 +63,13 @@ impl Config {
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(Refusal::Config(format!("metres_per_radian must be a positive number, not {length_m}")));
         }
-        Ok(())
+        let age_s = self.joint_state_max_age_s;
+        if age_s.is_nan() || age_s <= 0.0 {
+            return Err(Refusal::Config(format!("joint_state_max_age_s must be a positive number, not {age_s}")));
+        }
+        let of_robot = |error: manipulator::ManipulatorError| Refusal::Config(error.to_string());
+        self.path.check().map_err(of_robot)?;
+        self.timing.check().map_err(of_robot)
     }
 
     pub(crate) fn ordering(&self) -> Options {

@@ -20,6 +20,7 @@
 //! ```
 
 mod config;
+mod joints;
 mod message;
 mod pipeline;
 mod refusal;

@@ -6,6 +6,7 @@ use reorder::{Ordering, Topology, order_poses};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, SplineError, centripetal_knots};
 
 use crate::config::Config;
+use crate::joints::STANDSTILL;
 use crate::refusal::Refusal;
 
 /// How much farther than the path tolerance the final trajectory may pass from an input pose: the tolerance bounds the joint
@@ -47,6 +48,28 @@ pub struct Plan {
     pub approach_s: f64,
 }
 
+/// Poses on each segment of [`Plan::path`].
+const PATH_POSES_PER_SEGMENT: usize = 4;
+
+impl Plan {
+    /// The distinct poses of the request in recovered order, as `base_from_tool`.
+    pub fn ordered_poses(&self, request: &Request) -> Vec<Pose> {
+        self.ordering.distinct().iter().map(|&i| request.poses[i]).collect()
+    }
+
+    /// The curve between the poses too, for people to look at: four poses a segment, and its end.
+    pub fn path(&self) -> Vec<Pose> {
+        let (_, last) = self.spline.domain();
+        let part = |k: usize| k as f64 / PATH_POSES_PER_SEGMENT as f64;
+        let segment = |knots: &[f64]| {
+            let (from, to) = (knots[0], knots[1]);
+            (0..PATH_POSES_PER_SEGMENT).map(move |k| from + (to - from) * part(k))
+        };
+        let parameters = self.spline.knots().windows(2).flat_map(segment).chain([last]);
+        parameters.map(|t| self.spline.pose(t)).collect()
+    }
+}
+
 /// Orders, interpolates, follows, times and audits.
 ///
 /// # Errors
@@ -73,24 +96,23 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
     };
     let path = follow(robot, &spline, start.as_ref(), &config.path).map_err(at_fault)?;
     let timed = time_path(robot, &path, &config.timing).map_err(at_fault)?;
-    let (trajectory, approach_s) = with_approach(robot, config, start.as_ref(), &timed).map_err(at_fault)?;
+    let (trajectory, approach_s) = match &start {
+        Some(start) if config.approach => with_approach(robot, config, start, &timed).map_err(at_fault)?,
+        Some(start) => (at_first_pose(robot, start, timed.trajectory.clone())?, 0.0),
+        None => (timed.trajectory.clone(), 0.0),
+    };
 
     let pose_times_s = times_by_input(&ordering, &distinct, &timed.knot_times_s, approach_s);
     let (pose_error_max_m, pose_error_max_rad) = accuracy(robot, config, poses, &trajectory, &pose_times_s)?;
-    let audit = audit(robot, &trajectory);
-    if !audit.limits_ok {
-        return Err(Refusal::Limits(Box::new(audit)));
-    }
+    let audit = passed_audit(robot, &trajectory)?;
     Ok(Plan { ordering, spline, trajectory, pose_times_s, audit, pose_error_max_m, pose_error_max_rad, approach_s })
 }
 
 fn start_state(robot: &Robot, request: &Request) -> Result<Option<DVector<f64>>, Refusal> {
     let Some(start) = &request.start else { return Ok(None) };
-    let expected = robot.chain.dof();
-    if start.len() != expected || !start.iter().all(|q| q.is_finite()) {
-        return Err(Refusal::StartState { robot: robot.name.clone(), expected, given: start.len() });
-    }
-    Ok(Some(DVector::from_column_slice(start)))
+    let start = DVector::from_column_slice(start);
+    robot.check_within_limits("the start state", &start).map_err(Refusal::StartState)?;
+    Ok(Some(start))
 }
 
 /// The order; an open one begins at the end nearer to the robot's tool, where the robot's state is known.
@@ -147,7 +169,9 @@ fn interpolate(poses: &[Pose], distinct: &[usize], config: &Config, topology: To
     };
     PoseSpline::through(&ordered, &knots, ends).map_err(|source| {
         let near = match source {
-            SplineError::HalfTurn { from, to } | SplineError::Winding { from, to, .. } => vec![from, to],
+            SplineError::HalfTurn { from, to }
+            | SplineError::Winding { from, to, .. }
+            | SplineError::Overshoot { from, to, .. } => vec![from, to],
             SplineError::KnotsNotIncreasing { index, .. } => vec![index - 1, index],
             SplineError::NonFinitePose { index } => vec![index],
             _ => Vec::new(),
@@ -156,14 +180,25 @@ fn interpolate(poses: &[Pose], distinct: &[usize], config: &Config, topology: To
     })
 }
 
-/// The path's trajectory, led up to by a straight joint move from the start state where that is elsewhere.
+/// The trajectory itself, where the robot stands at its first point already: it would begin with a jump otherwise.
+fn at_first_pose(robot: &Robot, start: &DVector<f64>, trajectory: JointTrajectory) -> Result<JointTrajectory, Refusal> {
+    let away = |joint: usize| trajectory.points[0].positions[joint] - start[joint];
+    match (0..start.len()).find(|&joint| away(joint).abs() > STANDSTILL) {
+        None => Ok(trajectory),
+        Some(joint) => {
+            let name = robot.chain.joint_names()[joint].clone();
+            Err(Refusal::NotAtFirstPose { joint: name, away: away(joint) })
+        }
+    }
+}
+
+/// The path's trajectory, led up to by a straight joint move from the start state.
 fn with_approach(
     robot: &Robot,
     config: &Config,
-    start: Option<&DVector<f64>>,
+    start: &DVector<f64>,
     timed: &TimedPath,
 ) -> Result<(JointTrajectory, f64), ManipulatorError> {
-    let (Some(start), true) = (start, config.approach) else { return Ok((timed.trajectory.clone(), 0.0)) };
     let first = DVector::from_column_slice(&timed.trajectory.points[0].positions);
     let mut whole = rest_to_rest(robot, start, &first, &config.timing)?;
     let approach_s = whole.points[whole.points.len() - 1].time_s;
@@ -189,6 +224,12 @@ fn times_by_input(ordering: &Ordering, distinct: &[usize], knot_times_s: &[f64],
     times
 }
 
+/// The last gate before a robot.
+fn passed_audit(robot: &Robot, trajectory: &JointTrajectory) -> Result<Audit, Refusal> {
+    let audit = audit(robot, trajectory);
+    if audit.limits_ok { Ok(audit) } else { Err(Refusal::Limits(Box::new(audit))) }
+}
+
 fn accuracy(
     robot: &Robot,
     config: &Config,
@@ -210,4 +251,52 @@ fn accuracy(
         worst_rad = f64::max(worst_rad, error_rad);
     }
     Ok((worst_m, worst_rad))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two joint points a tenth of a second apart, at rest: legal if they are near each other.
+    fn move_by(rad: f64) -> JointTrajectory {
+        let robot = Robot::shipped("ur5e").unwrap();
+        let from = DVector::from_element(6, -1.0);
+        let mut trajectory = rest_to_rest(&robot, &from, &from.add_scalar(rad), &Default::default()).unwrap();
+        let seconds = trajectory.duration_s();
+        trajectory.points.iter_mut().for_each(|point| point.time_s *= 0.1 / seconds);
+        trajectory
+    }
+
+    /// Squeezed into a tenth of a second without its derivatives, a move breaks its limits and the gate stays shut.
+    #[test]
+    fn a_trajectory_that_fails_its_audit_is_withheld() {
+        let robot = Robot::shipped("ur5e").unwrap();
+        assert!(matches!(passed_audit(&robot, &move_by(0.5)), Err(Refusal::Limits(_))));
+        let from = DVector::from_element(6, -1.0);
+        let legal = rest_to_rest(&robot, &from, &from.add_scalar(0.5), &Default::default()).unwrap();
+        assert!(passed_audit(&robot, &legal).unwrap().limits_ok);
+    }
+
+    /// A pose that the tool is not at, in position or in orientation, is named.
+    #[test]
+    fn a_pose_that_is_missed_is_refused_by_its_index() {
+        let robot = Robot::shipped("ur5e").unwrap();
+        let config = Config::default();
+        let from = DVector::from_element(6, -1.0);
+        let trajectory = rest_to_rest(&robot, &from, &from.add_scalar(0.5), &config.timing).unwrap();
+        let there = |time: f64| robot.chain.forward(&trajectory.at(time)[0]);
+        let times = [0.0, 0.5 * trajectory.duration_s()];
+        let mut poses = times.map(there);
+        assert!(accuracy(&robot, &config, &poses, &trajectory, &times).is_ok());
+        poses[1].translation.vector.x += 3.0 * config.path.tolerance_m;
+        let refused = accuracy(&robot, &config, &poses, &trajectory, &times);
+        assert!(matches!(refused, Err(Refusal::Accuracy { input_pose: 1, .. })));
+        poses[1] = there(times[1]);
+        let tilt = Pose::rotation(manipulator::nalgebra::Vector3::x() * 3.0 * config.path.tolerance_rad);
+        poses[0] *= tilt;
+        let refused = accuracy(&robot, &config, &poses, &trajectory, &times);
+        assert!(matches!(refused, Err(Refusal::Accuracy { input_pose: 0, .. })));
+        // A time that is no number is not a pose that was passed.
+        assert!(accuracy(&robot, &config, &[there(0.0)], &trajectory, &[f64::NAN]).is_err());
+    }
 }

@@ -27,14 +27,42 @@ pub enum Refusal {
         reason: InvalidPose,
     },
     /// The start state does not fit the robot.
-    #[error("the start state has {given} joint positions, but {robot} has {expected} joints")]
-    StartState {
+    #[error("{0}")]
+    StartState(ManipulatorError),
+    /// Nothing says where the robot stands.
+    #[error("no joint state with all joints of {robot} has arrived: where the robot stands is unknown")]
+    NoJointState {
         /// Name of the robot.
         robot: String,
-        /// How many positions are needed.
-        expected: usize,
-        /// How many were given.
-        given: usize,
+    },
+    /// The planner itself failed.
+    #[error("the planner failed: {0}; please report this")]
+    Internal(String),
+    /// The robot was not heard of for too long.
+    #[error(
+        "the last joint state is {age_s:.1} s old, more than the {allowed_s} s allowed: where the robot stands is unknown"
+    )]
+    StaleJointState {
+        /// Age in s.
+        age_s: f64,
+        /// What the configuration allows, in s.
+        allowed_s: f64,
+    },
+    /// The robot moves; a trajectory from rest would begin with a jump.
+    #[error("{joint} is moving at {velocity:.3} rad/s (or m/s): plan again when the robot stands")]
+    Moving {
+        /// Name of the joint.
+        joint: String,
+        /// Its velocity in rad/s or m/s.
+        velocity: f64,
+    },
+    /// The robot left the place from which its trajectory was planned.
+    #[error("{joint} moved by {by:.4} rad (or m) while the trajectory was planned: plan again when the robot stands")]
+    MovedMeanwhile {
+        /// Name of the joint.
+        joint: String,
+        /// How far, in rad or m.
+        by: f64,
     },
     /// The poses admit no order at all.
     #[error("ordering: {0}")]
@@ -69,6 +97,14 @@ pub enum Refusal {
         /// Input index of the pose concerned.
         input_pose: Option<usize>,
     },
+    /// The robot stands elsewhere than the trajectory begins, and may not be led there.
+    #[error("{joint} stands {away:.4} rad (or m) from the first pose, and approach is off")]
+    NotAtFirstPose {
+        /// Name of the joint.
+        joint: String,
+        /// How far it would have to jump, in rad or m.
+        away: f64,
+    },
     /// The planned tool path misses a pose by more than the tolerance.
     #[error(
         "the planned path passes input pose {input_pose} at {error_m:.2e} m and {error_rad:.2e} rad, more than the tolerance"
@@ -91,7 +127,7 @@ impl Refusal {
     pub fn is_bad_input(&self) -> bool {
         matches!(
             self,
-            Self::Config(_) | Self::Frame { .. } | Self::InvalidPose { .. } | Self::StartState { .. } | Self::Order(_)
+            Self::Config(_) | Self::Frame { .. } | Self::InvalidPose { .. } | Self::StartState(_) | Self::Order(_)
         )
     }
 

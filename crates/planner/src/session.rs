@@ -2,7 +2,11 @@
 //!
 //! Planning takes seconds and must not block whoever receives messages, so the session never plans itself: it hands out a
 //! [`Job`], which the shell runs wherever it likes and brings back as [`Input::Finished`]. While a job runs, the newest poses
-//! wait; older waiting ones are superseded and counted. What was cleared meanwhile is not published.
+//! wait; older waiting ones are superseded, and what comes of the running job is discarded: a robot must not set out along poses
+//! when newer ones are known. The same poses again change nothing. What was cleared meanwhile is not published either.
+//!
+//! Where joint states arrive, a trajectory starts exactly where the robot stands; a robot that moves, that was not heard of for a
+//! while, or that moved while its trajectory was planned gets a refusal instead of a jump.
 
 use std::sync::Arc;
 
@@ -10,6 +14,7 @@ use manipulator::Robot;
 use se3_geom::pose_from_xyzw;
 
 use crate::config::Config;
+use crate::joints::MeasuredJoints;
 use crate::pipeline::{Plan, Request, plan};
 use crate::refusal::Refusal;
 
@@ -31,6 +36,8 @@ pub enum Input {
         names: Vec<String>,
         /// Positions in rad (or m), one a name.
         positions: Vec<f64>,
+        /// Velocities in rad/s (or m/s), one a name, or none at all.
+        velocities: Vec<f64>,
     },
     /// Plan the last poses again, from the present joint state.
     Replan,
@@ -63,6 +70,8 @@ pub enum Output {
         /// One sentence.
         message: String,
     },
+    /// Withdraw what was published: it no longer holds.
+    Withdraw,
     /// Something that a person should know; one sentence.
     Warn(String),
 }
@@ -97,7 +106,7 @@ pub struct Counters {
     pub planned: u64,
     /// Refusals published.
     pub refused: u64,
-    /// Outcomes dropped because poses were cleared or replaced by invalid ones meanwhile.
+    /// Outcomes dropped because poses were cleared or replaced meanwhile.
     pub discarded: u64,
 }
 
@@ -106,7 +115,7 @@ pub struct Counters {
 pub struct Session {
     robot: Arc<Robot>,
     config: Arc<Config>,
-    joint_positions: Option<Vec<f64>>,
+    joints: Option<MeasuredJoints>,
     last: Option<Request>,
     running: bool,
     waiting: bool,
@@ -115,6 +124,11 @@ pub struct Session {
 }
 
 impl Job {
+    /// The outcome of a job that was lost on the way, so that the session does not wait for it for ever.
+    pub fn lost(self, why: String) -> Box<Outcome> {
+        Box::new(Outcome { generation: self.generation, request: self.request, result: Err(Refusal::Internal(why)) })
+    }
+
     /// Plans. Pure and possibly slow.
     pub fn run(self) -> Box<Outcome> {
         let result = plan(&self.robot, &self.config, &self.request);
@@ -128,7 +142,7 @@ impl Session {
         Self {
             robot: Arc::new(robot),
             config: Arc::new(config),
-            joint_positions: None,
+            joints: None,
             last: None,
             running: false,
             waiting: false,
@@ -147,14 +161,21 @@ impl Session {
         self.counters
     }
 
-    /// Takes one input and says what to do, in this order.
-    pub fn handle(&mut self, input: Input) -> Vec<Output> {
+    /// Takes one input that arrives at `now_s`, in s on a clock that never steps back, and says what to do, in this order.
+    pub fn handle(&mut self, now_s: f64, input: Input) -> Vec<Output> {
         match input {
-            Input::Poses { frame_id, stamp_ns, poses } => self.poses(frame_id, stamp_ns, &poses),
-            Input::JointState { names, positions } => self.joint_state(&names, &positions),
+            Input::Poses { frame_id, stamp_ns, poses } => self.poses(now_s, frame_id, stamp_ns, &poses),
+            Input::JointState { names, positions, velocities } => {
+                match MeasuredJoints::read(&self.robot, now_s, &names, &positions, &velocities) {
+                    Ok(Some(joints)) => self.joints = Some(joints),
+                    Ok(None) => {}
+                    Err(why) => return vec![Output::Warn(format!("a joint state is ignored: {why}"))],
+                }
+                Vec::new()
+            }
             Input::Replan if self.last.is_none() => vec![reply(false, "there are no poses to plan")],
             Input::Replan => {
-                let mut outputs = self.request_plan();
+                let mut outputs = self.request_plan(now_s);
                 outputs.push(reply(true, "planning the last poses again"));
                 outputs
             }
@@ -162,90 +183,104 @@ impl Session {
                 self.last = None;
                 self.waiting = false;
                 self.generation += 1;
-                vec![reply(true, "poses and results are forgotten")]
+                vec![Output::Withdraw, reply(true, "poses and results are forgotten")]
             }
-            Input::Finished(outcome) => self.finished(outcome),
+            Input::Finished(outcome) => self.finished(now_s, outcome),
         }
     }
 
     /// Takes new poses, or refuses them as a whole. Refused poses also displace the ones before: what was asked for last must
     /// not be answered with a motion through something older.
-    fn poses(&mut self, frame_id: String, stamp_ns: i64, raw: &[RawPose]) -> Vec<Output> {
+    fn poses(&mut self, now_s: f64, frame_id: String, stamp_ns: i64, raw: &[RawPose]) -> Vec<Output> {
         self.counters.received += 1;
-        self.counters.superseded += u64::from(self.waiting);
         let checked = raw.iter().enumerate().map(|(input_pose, raw)| {
             pose_from_xyzw(raw.position, raw.quaternion_xyzw)
                 .map_err(|reason| Refusal::InvalidPose { input_pose, reason })
         });
         match checked.collect::<Result<Vec<_>, _>>() {
             Ok(poses) => {
-                self.last = Some(Request { frame_id, stamp_ns, poses, start: None });
-                self.request_plan()
+                let request = Request { frame_id, stamp_ns, poses, start: None };
+                let same = |last: &Request| last.frame_id == request.frame_id && last.poses == request.poses;
+                if self.running && !self.waiting && self.last.as_ref().is_some_and(same) {
+                    // A publisher that repeats itself asks for nothing new, and must not keep its own plan from ending.
+                    return Vec::new();
+                }
+                self.last = Some(request);
+                // A motion through older poses is not wanted any more.
+                self.generation += u64::from(self.running);
+                self.counters.superseded += u64::from(self.waiting);
+                self.request_plan(now_s)
             }
             Err(refusal) => {
                 self.last = None;
                 self.waiting = false;
                 self.generation += 1;
-                self.counters.refused += 1;
                 let request = Request { frame_id, stamp_ns, ..Request::default() };
-                vec![Output::Publish(Box::new(Outcome { generation: self.generation, request, result: Err(refusal) }))]
+                vec![self.publish(request, Err(refusal))]
             }
         }
     }
 
-    fn request_plan(&mut self) -> Vec<Output> {
+    fn request_plan(&mut self, now_s: f64) -> Vec<Output> {
         if self.running {
             self.waiting = true;
             return Vec::new();
         }
         let Some(poses) = self.last.clone() else { return Vec::new() };
-        self.running = true;
         self.waiting = false;
-        vec![Output::Run(Job {
-            generation: self.generation,
-            robot: Arc::clone(&self.robot),
-            config: Arc::clone(&self.config),
-            request: Request { start: self.joint_positions.clone(), ..poses },
-        })]
+        match self.present_state(now_s) {
+            Ok(start) => {
+                self.running = true;
+                vec![Output::Run(Job {
+                    generation: self.generation,
+                    robot: Arc::clone(&self.robot),
+                    config: Arc::clone(&self.config),
+                    request: Request { start, ..poses },
+                })]
+            }
+            Err(refusal) => vec![self.publish(poses, Err(refusal))],
+        }
     }
 
-    fn finished(&mut self, outcome: Box<Outcome>) -> Vec<Output> {
+    /// Where the robot stands, if anything says so; a refusal where that cannot be relied on.
+    fn present_state(&self, now_s: f64) -> Result<Option<Vec<f64>>, Refusal> {
+        let Some(joints) = &self.joints else {
+            let unknown = Refusal::NoJointState { robot: self.robot.name.clone() };
+            return if self.config.require_joint_state { Err(unknown) } else { Ok(None) };
+        };
+        joints.standing(&self.robot, now_s, self.config.joint_state_max_age_s).map(Some)
+    }
+
+    fn publish(&mut self, request: Request, result: Result<Plan, Refusal>) -> Output {
+        match result {
+            Ok(_) => self.counters.planned += 1,
+            Err(_) => self.counters.refused += 1,
+        }
+        Output::Publish(Box::new(Outcome { generation: self.generation, request, result }))
+    }
+
+    fn finished(&mut self, now_s: f64, outcome: Box<Outcome>) -> Vec<Output> {
         self.running = false;
         let mut outputs = Vec::new();
         if outcome.generation == self.generation {
-            match outcome.result {
-                Ok(_) => self.counters.planned += 1,
-                Err(_) => self.counters.refused += 1,
-            }
-            outputs.push(Output::Publish(outcome));
+            let Outcome { request, result, .. } = *outcome;
+            // The robot must still stand where the trajectory begins, whatever was known when planning started.
+            let result = result.and_then(|plan| {
+                let begin = &plan.trajectory.points[0].positions;
+                self.present_state(now_s)?;
+                match self.joints.as_ref().and_then(|joints| joints.moved_from(&self.robot, begin)) {
+                    Some(moved) => Err(moved),
+                    None => Ok(plan),
+                }
+            });
+            outputs.push(self.publish(request, result));
         } else {
             self.counters.discarded += 1;
         }
         if self.waiting {
-            outputs.extend(self.request_plan());
+            outputs.extend(self.request_plan(now_s));
         }
         outputs
-    }
-
-    /// Keeps the positions of this robot's joints, by name. A message that lacks some of them belongs to something else.
-    fn joint_state(&mut self, names: &[String], positions: &[f64]) -> Vec<Output> {
-        if names.len() != positions.len() {
-            return vec![Output::Warn(format!(
-                "a joint state has {} names but {} positions and is ignored",
-                names.len(),
-                positions.len()
-            ))];
-        }
-        let position_of = |joint: &String| names.iter().position(|name| name == joint).map(|i| positions[i]);
-        let Some(ours) = self.robot.chain.joint_names().iter().map(position_of).collect::<Option<Vec<_>>>() else {
-            return Vec::new();
-        };
-        if let Some(bad) = ours.iter().position(|q| !q.is_finite()) {
-            let joint = &self.robot.chain.joint_names()[bad];
-            return vec![Output::Warn(format!("the joint state of {joint} is not a finite number and is ignored"))];
-        }
-        self.joint_positions = Some(ours);
-        Vec::new()
     }
 }
 

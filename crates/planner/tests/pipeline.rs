@@ -119,6 +119,22 @@ fn plan_with(config: &Config, request: &Request) -> Result<Plan, Refusal> {
     plan(&robot(), config, request)
 }
 
+/// With the approach off, a robot that stands elsewhere would have to jump; one that stands there is planned from there.
+#[test]
+fn without_an_approach_the_robot_must_stand_at_the_first_pose() {
+    let config = Config { approach: false, ..Config::default() };
+    let recording = recording("lasa_sine");
+    let refusal = plan_with(&config, &request(&recording, Some(&HOME))).unwrap_err();
+    assert!(matches!(refusal, Refusal::NotAtFirstPose { .. }), "{refusal}");
+    let (_, approached) = planned("lasa_sine", Some(&HOME));
+    let there: Vec<f64> = approached.trajectory.at(approached.approach_s)[0].iter().copied().collect();
+    let plan = plan_with(&config, &request(&recording, Some(&there))).unwrap();
+    assert_eq!(plan.approach_s, 0.0);
+    for (q, start) in plan.trajectory.points[0].positions.iter().zip(&there) {
+        assert!((q - start).abs() < 1e-6, "inverse kinematics solves to 1e-9");
+    }
+}
+
 /// Planning the same twice gives the same bits.
 #[test]
 fn plans_repeat_bit_for_bit() {
@@ -177,7 +193,17 @@ fn refusals_name_the_input() {
     assert!(elsewhere.is_bad_input());
 
     let short = said(&Config::default(), &Request { start: Some(vec![0.0; 5]), ..base.clone() });
-    assert_eq!(short.to_string(), "the start state has 5 joint positions, but ur5e has 6 joints");
+    assert_eq!(short.to_string(), "the start state has 5 values for a robot of 6 joints");
+    // Degrees where radians belong, an encoder gone mad, and no number: refused before anything is planned from them.
+    for (value, words) in [
+        (-90.0, "shoulder_pan_joint is at -90.0000"),
+        (1e6, "beyond its limits"),
+        (1e300, "beyond its limits"),
+        (f64::NAN, "not a finite number"),
+    ] {
+        let refused = said(&Config::default(), &Request { start: Some(vec![value; 6]), ..base.clone() });
+        assert!(refused.is_bad_input() && refused.to_string().contains(words), "{refused}");
+    }
 
     let one = said(&Config::default(), &Request { poses: vec![recording.poses[0]], ..base.clone() });
     assert!(one.is_bad_input() && one.to_string().contains("1 points"), "{one}");
@@ -222,6 +248,10 @@ fn configuration_is_checked_by_name() {
         ("metres_per_radian: -1", "metres_per_radian"),
         ("metres_per_radian: .nan", "metres_per_radian"),
         ("topology: round", "round"),
+        ("timing: {velocity_scale: 1.0e-9}", "velocity_scale"),
+        ("timing: {rate_hz: 1}", "rate_hz"),
+        ("path: {tolerance_m: 0}", "tolerance_m"),
+        ("joint_state_max_age_s: .nan", "joint_state_max_age_s"),
     ] {
         let said = Config::from_yaml(text).unwrap_err().to_string();
         assert!(said.starts_with("configuration: ") && said.contains(word), "{said}");

@@ -1,7 +1,8 @@
 //! `reorder order`.
 
 use clap::{Args, ValueEnum};
-use planner::reorder::{Options, OrderError, Ordering, TopologyChoice, order, order_poses};
+use planner::Config;
+use planner::reorder::{Options, OrderError, Ordering, TopologyChoice, Verdict, order, order_poses};
 use planner::se3_geom::{Pose, R2, R3, So3, xyzw_from_rotation};
 
 use crate::failure::Failure;
@@ -16,7 +17,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     manifold: Option<Manifold>,
     /// How many metres count as much as one radian when poses are compared
-    #[arg(long, value_name = "L", default_value_t = 0.1)]
+    #[arg(long, value_name = "L", default_value_t = Config::default().metres_per_radian)]
     metres_per_radian: f64,
     /// How to order
     #[arg(long, default_value = "auto")]
@@ -74,6 +75,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::BadInput(format!("{}: {error}", arguments.source.input.display())))?;
     // Without rotations and translations to weigh against each other, there is no weight that the order could hang on.
     ordering.weight_stable.get_or_insert(true);
+    if ordering.verdict == Verdict::Ambiguous && !matches!(arguments.format, Format::Json) {
+        // The other formats have no place for it, and an order that is in doubt must not pass for a sure one.
+        let first = ordering.doubts.first().map_or("", |doubt| &doubt.why);
+        eprintln!(
+            "reorder: warning: {}: the order is ambiguous ({} doubts): {first}",
+            arguments.source.input.display(),
+            ordering.doubts.len()
+        );
+    }
     print(&match arguments.format {
         Format::Json => serde_json::to_string(&ordering).map_err(Failure::bad_input)? + "\n",
         Format::Indices => ordering.order.iter().map(|row| format!("{row}\n")).collect(),

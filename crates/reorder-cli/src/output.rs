@@ -7,7 +7,7 @@ use std::path::Path;
 use planner::manipulator::JointTrajectory;
 use planner::pose_bag::BagWriter;
 use planner::pose_bag::msg;
-use planner::{Plan, trajectory_message};
+use planner::{Plan, Request, trajectory_message};
 
 use crate::failure::Failure;
 
@@ -51,21 +51,16 @@ pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
     write().map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))
 }
 
-/// Writes a bag with the joint trajectory and the ordered poses, on the topics of the ROS node.
-pub(crate) fn write_bag(
-    path: &Path,
-    plan: &Plan,
-    frame_id: &str,
-    poses: &[planner::se3_geom::Pose],
-) -> Result<(), Failure> {
-    let header = || msg::Header { stamp: msg::Time::default(), frame_id: frame_id.to_owned() };
-    let ordered: Vec<msg::Pose> = plan.ordering.order.iter().map(|&i| (&poses[i]).into()).collect();
-    let path_poses = ordered.iter().map(|&pose| msg::PoseStamped { header: header(), pose }).collect();
+/// Writes a bag with what the ROS node publishes, on the same topics.
+pub(crate) fn write_bag(path: &Path, plan: &Plan, base_frame: &str, request: &Request) -> Result<(), Failure> {
+    let header = || msg::Header { stamp: msg::Time::default(), frame_id: base_frame.to_owned() };
+    let ordered = plan.ordered_poses(request).iter().map(Into::into).collect();
+    let curve = plan.path().iter().map(|pose| msg::PoseStamped { header: header(), pose: pose.into() }).collect();
     let write = || {
         let mut bag = BagWriter::create(path)?;
-        bag.write("/joint_trajectory", 0, &trajectory_message(&plan.trajectory, msg::Header::default()))?;
-        bag.write("/reorder/ordered_poses", 0, &msg::PoseArray { header: header(), poses: ordered.clone() })?;
-        bag.write("/reorder/path", 0, &msg::Path { header: header(), poses: path_poses })?;
+        bag.write("/joint_trajectory", 0, &trajectory_message(&plan.trajectory, header()))?;
+        bag.write("/reorder/ordered_poses", 0, &msg::PoseArray { header: header(), poses: ordered })?;
+        bag.write("/reorder/path", 0, &msg::Path { header: header(), poses: curve })?;
         bag.finish()
     };
     write().map_err(Failure::bad_input)

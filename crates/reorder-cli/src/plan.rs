@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// Frames and limits of every joint, in the form of config/robots/ur5e.yaml
     #[arg(long, value_name = "FILE.yaml")]
     limits: Option<PathBuf>,
-    /// Trajectory points a second
+    /// Trajectory points a second, from 10 to 10000 [default: 100]
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
     /// Where the trajectory goes: a CSV or an MCAP file; CSV on standard output where it is not given
@@ -32,19 +32,19 @@ pub(crate) struct Arguments {
     /// Where the report goes: the JSON object of `order` with the plan's audit and the time of every pose
     #[arg(long, value_name = "REPORT.json")]
     report: Option<PathBuf>,
-    /// How many metres count as much as one radian when poses are compared
+    /// How many metres count as much as one radian when poses are compared [default: 0.1]
     #[arg(long, value_name = "L")]
     metres_per_radian: Option<f64>,
     /// Open curve, closed curve, or told from the poses
     #[arg(long, default_value = "auto")]
     topology: Topology,
-    /// Pose (counted from 0) at which the trajectory starts
+    /// Pose (counted from 0) at which the trajectory starts: one of the two ends, unless the curve is closed
     #[arg(long, value_name = "INDEX")]
     start: Option<usize>,
-    /// Joint positions the robot stands at, in rad, separated by commas; the trajectory then starts there
+    /// Joint positions the robot stands at, in rad, from base to tool, separated by commas; the trajectory then starts there
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     from: Option<Vec<f64>>,
-    /// Least certain order that is still planned
+    /// Least certain order that is still planned (nothing is certified yet)
     #[arg(long, default_value = "plausible")]
     minimum_verdict: MinimumVerdict,
 }
@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     match &arguments.output {
         None => print(&trajectory_csv(&plan.trajectory)),
-        Some(path) if as_bag => write_bag(path, &plan, &robot.base_frame, &request.poses),
+        Some(path) if as_bag => write_bag(path, &plan, &robot.base_frame, &request),
         Some(path) => write_whole(path, &trajectory_csv(&plan.trajectory)),
     }?;
     if let Some(path) = &arguments.report {
@@ -83,14 +83,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let ratio = &plan.audit.max_ratio;
     eprintln!(
-        "{} poses, order {:?}; {} points in {:.3} s; peak over limit: velocity {:.3}, acceleration {:.3}, jerk {:.3}",
+        "{} poses, order {:?}; {} points in {:.3} s; peaks at {:.1} % of the velocity, {:.1} % of the acceleration and {:.1} % of the \
+         jerk limits",
         request.poses.len(),
         plan.ordering.verdict,
         plan.trajectory.points.len(),
         plan.trajectory.duration_s(),
-        ratio.velocity,
-        ratio.acceleration,
-        ratio.jerk
+        100.0 * ratio.velocity,
+        100.0 * ratio.acceleration,
+        100.0 * ratio.jerk
     );
     Ok(())
 }

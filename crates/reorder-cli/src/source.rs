@@ -85,13 +85,8 @@ impl Source {
 }
 
 fn points_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Points, Failure> {
-    let has = |columns: &[&str]| columns.iter().all(|c| table.has_column(c));
-    let (turned, placed) = (has(&["qx", "qy", "qz", "qw"]), has(&["x", "y", "z"]));
     let manifold = match manifold {
-        None if turned && has(&["x"]) => Manifold::Se3,
-        None if turned => Manifold::So3,
-        None | Some(Manifold::Rn) if placed => Manifold::R3,
-        None | Some(Manifold::Rn) => Manifold::R2,
+        None | Some(Manifold::Rn) => manifold_of_columns(table, manifold.is_some())?,
         Some(named) => named,
     };
     let select = |columns: &[&str]| table.select(columns).map_err(Failure::bad_input);
@@ -111,5 +106,27 @@ fn points_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Points, 
             Points::Rotations(rows.iter().zip(table.line_numbers()).map(rotation).collect::<Result<_, _>>()?)
         }
         Manifold::Se3 => Points::Poses(table.poses().map_err(Failure::bad_input)?),
+    })
+}
+
+/// The manifold whose columns these are, all of them and no others but `t`: a column that nobody looks at could be the one that
+/// tells points apart.
+fn manifold_of_columns(table: &Table, flat_only: bool) -> Result<Manifold, Failure> {
+    let known: [(&[&str], Manifold); 4] = [
+        (&["x", "y"], Manifold::R2),
+        (&["x", "y", "z"], Manifold::R3),
+        (&["qx", "qy", "qz", "qw"], Manifold::So3),
+        (&["x", "y", "z", "qx", "qy", "qz", "qw"], Manifold::Se3),
+    ];
+    let present: Vec<&str> = table.columns().iter().map(String::as_str).filter(|&column| column != "t").collect();
+    let is_all = |columns: &[&str]| columns.len() == present.len() && columns.iter().all(|c| present.contains(c));
+    let allowed = |manifold: Manifold| !flat_only || matches!(manifold, Manifold::R2 | Manifold::R3);
+    let found = known.iter().find(|(columns, manifold)| is_all(columns) && allowed(*manifold));
+    found.map(|&(_, manifold)| manifold).ok_or_else(|| {
+        let (file, columns) = (table.file(), present.join(", "));
+        Failure::BadInput(format!(
+            "{file}: the columns {columns} are not those of a manifold (x,y · x,y,z · qx,qy,qz,qw · x,y,z,qx,qy,qz,qw); \
+             name one with --manifold to use its columns and ignore the others"
+        ))
     })
 }

@@ -147,6 +147,8 @@ fn plan_writes_csv_and_mcap() {
     );
 }
 
+const COLUMNS: &str = "name one with --manifold to use its columns and ignore the others";
+
 #[test]
 fn bad_input_exits_with_2_and_names_file_and_line() {
     let folder = tempfile::tempdir().unwrap();
@@ -172,13 +174,19 @@ fn bad_input_exits_with_2_and_names_file_and_line() {
             "one.csv: there are 1 points to order, but at least 2 are needed",
         ),
         ("equal.csv", "x,y\n1,2\n1,2\n1,2\n".into(), "equal.csv: all 3 points are equal, so there is nothing to order"),
-        ("columns.csv", "a,b\n1,2\n".into(), "columns.csv has no column x; its columns are a, b"),
+        ("columns.csv", "a,b\n1,2\n".into(), COLUMNS),
+        ("columns.csv", "x,y,theta\n0,0,1\n1,0,2\n".into(), COLUMNS),
+        ("columns.csv", "x,y,qx\n0,0,1\n1,0,2\n".into(), COLUMNS),
     ] {
         let path = file(&folder, name, &content);
         let (code, said) = refusal(&["order", &path]);
         assert_eq!(code, 2, "{said}");
         assert!(said.ends_with(sentence) && said.starts_with("reorder: "), "{said}");
     }
+    let table = file(&folder, "wide.csv", "x,y,z,w\n0,0,0,1\n1,0,0,2\n2,0,0,3\n");
+    let (code, said) = refusal(&["order", &table, "--manifold", "rn"]);
+    assert!(code == 2 && said.ends_with(COLUMNS), "{said}");
+    assert_eq!(out(&reorder(&["order", &table, "--manifold", "r3", "--format", "indices"])), "0\n1\n2\n");
     let (code, said) = refusal(&["order", "/nowhere/at/all.csv"]);
     assert_eq!((code, said.as_str()), (2, "reorder: /nowhere/at/all.csv: No such file or directory (os error 2)"));
     let path = file(&folder, "plan.csv", &format!("{pose}NaN,0,0,0,0,0,1\n"));

@@ -16,13 +16,38 @@ pub(crate) fn check_parameter_files(arguments: impl Iterator<Item = String>) -> 
         let document: serde_yaml::Value = serde_yaml::from_str(&text).map_err(|error| refuse(error.to_string()))?;
         let nodes = document.as_mapping().ok_or_else(|| refuse("it has no node names at its top".into()))?;
         for (node, content) in nodes {
-            if content.get("ros__parameters").is_none() {
+            if !has_parameters(content) {
                 let node = node.as_str().unwrap_or("?");
                 return Err(refuse(format!("{node} has no ros__parameters")));
             }
         }
     }
     Ok(())
+}
+
+/// Directly, or under the names of namespaces.
+fn has_parameters(content: &serde_yaml::Value) -> bool {
+    let Some(content) = content.as_mapping() else { return false };
+    content.contains_key("ros__parameters") || content.values().any(has_parameters)
+}
+
+/// r2r panics where rcl refuses the arguments; this makes an error of it.
+pub(crate) fn create_context() -> Result<r2r::Context, NodeError> {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    let created = std::panic::catch_unwind(r2r::Context::create);
+    std::panic::set_hook(hook);
+    match created {
+        Ok(context) => Ok(context?),
+        Err(panic) => {
+            let why = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+            Err(NodeError::CommandLine(one_line(why.unwrap_or("no reason given"))))
+        }
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -41,6 +66,7 @@ mod tests {
     #[test]
     fn parameter_files_are_checked_before_ros_sees_them() {
         assert_eq!(check("reorder:\n  ros__parameters:\n    approach: true\n"), "fine");
+        assert_eq!(check("cell:\n  reorder:\n    ros__parameters:\n      approach: true\n"), "fine");
         assert!(check("reorder:\n  approach: true\n").ends_with("reorder has no ros__parameters"));
         assert!(check("- 1\n- 2\n").ends_with("it has no node names at its top"));
         assert!(check("reorder: [1, 2\n").starts_with("parameter file "));

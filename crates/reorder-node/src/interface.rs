@@ -11,7 +11,7 @@ use r2r::{Node, Publisher, QosProfile, ServiceRequest};
 use futures::stream::{Stream, StreamExt};
 use planner::Input;
 
-use crate::message::{header, joint_state_input, path_message, pose_message, poses_input, trajectory_message};
+use crate::message::{header, joint_state_input, path_message, pose_array, poses_input, trajectory_message};
 
 /// What arrives at the node.
 pub(crate) enum Arrival {
@@ -55,12 +55,22 @@ impl Publishers {
     pub(crate) fn publish(&self, robot: &planner::manipulator::Robot, outcome: &Outcome) -> r2r::Result<()> {
         let report = Report::of(&robot.name, &outcome.result);
         self.report.publish(&r2r::std_msgs::msg::String { data: report.to_json() })?;
-        let Ok(plan) = &outcome.result else { return Ok(()) };
+        let Ok(plan) = &outcome.result else { return self.withdraw_poses() };
         let header = header(&robot.base_frame, outcome.request.stamp_ns);
+        self.path.publish(&path_message(&plan.path(), header.clone()))?;
         // Equal poses once: whoever follows these must not meet the same waypoint twice. The report has every input index.
-        let poses = plan.ordering.distinct().iter().map(|&i| pose_message(&outcome.request.poses[i])).collect();
-        self.path.publish(&path_message(&plan.spline, &header))?;
-        self.ordered_poses.publish(&PoseArray { header, poses })?;
+        self.ordered_poses.publish(&pose_array(&plan.ordered_poses(&outcome.request), header))?;
         self.trajectory.publish(&trajectory_message(&plan.trajectory, &robot.base_frame))
+    }
+
+    /// Empties the latched topics, so that latecomers do not take up what no longer holds.
+    pub(crate) fn withdraw(&self) -> r2r::Result<()> {
+        self.report.publish(&r2r::std_msgs::msg::String { data: "{}".into() })?;
+        self.withdraw_poses()
+    }
+
+    fn withdraw_poses(&self) -> r2r::Result<()> {
+        self.path.publish(&Path::default())?;
+        self.ordered_poses.publish(&PoseArray::default())
     }
 }

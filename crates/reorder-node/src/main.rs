@@ -11,7 +11,25 @@ mod shell;
 
 use std::process::ExitCode;
 
+const HELP: &str = "\
+reorder_node: poses in any order in, an audited joint trajectory out (ROS 2 node /reorder)
+
+usage: reorder_node [--ros-args --params-file FILE -p NAME:=VALUE -r FROM:=TO …]
+
+in   ~/poses          geometry_msgs/PoseArray     in the robot's base frame, in any order
+     joint_states     sensor_msgs/JointState      where the robot stands
+out  joint_trajectory trajectory_msgs/JointTrajectory
+     ~/ordered_poses  geometry_msgs/PoseArray     latched
+     ~/path           nav_msgs/Path               latched
+     ~/report         std_msgs/String (JSON)      latched: order, verdict, doubts, audit, or the refusal
+srv  ~/replan, ~/clear  std_srvs/Trigger
+Parameters: config/reorder.yaml";
+
 fn main() -> ExitCode {
+    if std::env::args().any(|argument| argument == "--help" || argument == "-h") {
+        println!("{HELP}");
+        return ExitCode::SUCCESS;
+    }
     match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -40,6 +58,10 @@ enum NodeError {
     Parameters(String),
     #[error("{file}: {reason}")]
     RobotFile { file: String, reason: String },
+    #[error("the middleware stopped: {0}")]
+    Middleware(String),
+    #[error("ROS 2 refuses the command line or a parameter file: {0}")]
+    CommandLine(String),
     #[error("ROS 2: {0}")]
     Ros(#[from] r2r::Error),
     #[error("{0}")]

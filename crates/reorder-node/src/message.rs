@@ -1,7 +1,7 @@
 //! ROS messages to planner types and back; the only place that knows both.
 
 use planner::manipulator::JointTrajectory;
-use planner::se3_geom::{Pose, PoseSpline, xyzw_from_rotation};
+use planner::se3_geom::{Pose, xyzw_from_rotation};
 use planner::{Input, RawPose};
 use r2r::builtin_interfaces::msg::{Duration, Time};
 use r2r::geometry_msgs::msg as geometry;
@@ -11,8 +11,6 @@ use r2r::std_msgs::msg::Header;
 use r2r::trajectory_msgs::msg as trajectory;
 
 const NANOS: i64 = 1_000_000_000;
-/// Poses of the published path on each segment of the curve.
-const PATH_POSES_PER_SEGMENT: usize = 4;
 
 pub(crate) fn poses_input(message: geometry::PoseArray) -> Input {
     let raw = |pose: &geometry::Pose| {
@@ -28,7 +26,7 @@ pub(crate) fn poses_input(message: geometry::PoseArray) -> Input {
 }
 
 pub(crate) fn joint_state_input(message: JointState) -> Input {
-    Input::JointState { names: message.name, positions: message.position }
+    Input::JointState { names: message.name, positions: message.position, velocities: message.velocity }
 }
 
 pub(crate) fn header(frame_id: &str, stamp_ns: i64) -> Header {
@@ -36,7 +34,7 @@ pub(crate) fn header(frame_id: &str, stamp_ns: i64) -> Header {
     Header { stamp, frame_id: frame_id.to_owned() }
 }
 
-pub(crate) fn pose_message(pose: &Pose) -> geometry::Pose {
+fn pose_message(pose: &Pose) -> geometry::Pose {
     let [x, y, z, w] = xyzw_from_rotation(&pose.rotation);
     let p = &pose.translation.vector;
     geometry::Pose {
@@ -45,17 +43,13 @@ pub(crate) fn pose_message(pose: &Pose) -> geometry::Pose {
     }
 }
 
-/// The curve between the poses too, for people to look at.
-pub(crate) fn path_message(spline: &PoseSpline, header: &Header) -> Path {
-    let stamped = |t: f64| geometry::PoseStamped { header: header.clone(), pose: pose_message(&spline.pose(t)) };
-    let between = |knots: &[f64]| {
-        let (from, to) = (knots[0], knots[1]);
-        (0..PATH_POSES_PER_SEGMENT).map(move |k| from + (to - from) * k as f64 / PATH_POSES_PER_SEGMENT as f64)
-    };
-    let (_, last) = spline.domain();
-    let mut poses: Vec<_> = spline.knots().windows(2).flat_map(between).map(stamped).collect();
-    poses.push(stamped(last));
-    Path { header: header.clone(), poses }
+pub(crate) fn pose_array(poses: &[Pose], header: Header) -> geometry::PoseArray {
+    geometry::PoseArray { header, poses: poses.iter().map(pose_message).collect() }
+}
+
+pub(crate) fn path_message(poses: &[Pose], header: Header) -> Path {
+    let stamped = |pose| geometry::PoseStamped { header: header.clone(), pose: pose_message(pose) };
+    Path { poses: poses.iter().map(stamped).collect(), header }
 }
 
 /// A zero stamp in the header asks the controller to start at once.

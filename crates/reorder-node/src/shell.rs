@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use futures::StreamExt;
 use planner::{Input, Output, Session};
 use r2r::std_srvs::srv::Trigger;
-use r2r::{Context, Node, ParameterValue, ServiceRequest};
+use r2r::{Node, ParameterValue, ServiceRequest};
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::mpsc;
 
 use crate::NodeError;
+use crate::arguments;
 use crate::interface::{Arrival, Publishers, arrivals};
 use crate::settings;
 
@@ -25,7 +26,7 @@ const SHUTDOWN_DEADLINE: Duration = Duration::from_secs(3);
 pub(crate) async fn run() -> Result<(), NodeError> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
-    let context = Context::create()?;
+    let context = arguments::create_context()?;
     let mut node = Node::create(context.clone(), "reorder", "")?;
     let (robot, config) = settings::from_parameters(parameters(&node))?;
     let logger = node.logger().to_owned();
@@ -41,7 +42,7 @@ pub(crate) async fn run() -> Result<(), NodeError> {
     );
 
     let stop = Arc::new(AtomicBool::new(false));
-    let spinning = tokio::task::spawn_blocking({
+    let mut spinning = tokio::task::spawn_blocking({
         let stop = Arc::clone(&stop);
         move || {
             while !stop.load(Ordering::Relaxed) {
@@ -56,6 +57,8 @@ pub(crate) async fn run() -> Result<(), NodeError> {
         tokio::select! {
             _ = interrupt.recv() => break,
             _ = terminate.recv() => break,
+            // It ends by itself only by a panic inside the middleware; without it nothing would ever arrive again.
+            ended = &mut spinning => return Err(NodeError::Middleware(format!("{ended:?}"))),
             Some(arrival) = arrivals.next() => match arrival {
                 Arrival::Message(input) => shell.handle(input, None),
                 Arrival::Service(input, request) => shell.handle(input, Some(request)),
@@ -85,6 +88,7 @@ fn parameters(node: &Node) -> Vec<(String, ParameterValue)> {
 
 struct Shell {
     session: Session,
+    started: Instant,
     publishers: Publishers,
     logger: String,
     finished: mpsc::UnboundedReceiver<Input>,
@@ -94,17 +98,20 @@ struct Shell {
 impl Shell {
     fn new(session: Session, publishers: Publishers, logger: String) -> Self {
         let (finish, finished) = mpsc::unbounded_channel();
-        Self { session, publishers, logger, finished, finish }
+        Self { session, started: Instant::now(), publishers, logger, finished, finish }
     }
 
     fn handle(&mut self, input: Input, mut request: Option<ServiceRequest<Trigger::Service>>) {
-        for output in self.session.handle(input) {
+        for output in self.session.handle(self.started.elapsed().as_secs_f64(), input) {
             match output {
                 Output::Run(job) => {
                     let finish = self.finish.clone();
-                    tokio::task::spawn_blocking(move || {
+                    tokio::spawn(async move {
+                        let spare = job.clone();
+                        let ran = tokio::task::spawn_blocking(move || job.run()).await;
+                        let outcome = ran.unwrap_or_else(|panic| spare.lost(panic.to_string()));
                         // The receiver is gone only when the node shuts down.
-                        let _ = finish.send(Input::Finished(job.run()));
+                        let _ = finish.send(Input::Finished(outcome));
                     });
                 }
                 Output::Publish(outcome) => {
@@ -128,6 +135,11 @@ impl Shell {
                         && let Err(error) = request.respond(Trigger::Response { success, message })
                     {
                         r2r::log_error!(&self.logger, "a service was not answered: {error}");
+                    }
+                }
+                Output::Withdraw => {
+                    if let Err(error) = self.publishers.withdraw() {
+                        r2r::log_error!(&self.logger, "publishing failed: {error}");
                     }
                 }
                 Output::Warn(sentence) => r2r::log_warn!(&self.logger, "{sentence}"),

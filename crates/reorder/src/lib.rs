@@ -9,9 +9,9 @@
 //! use se3_geom::{R3, nalgebra::Vector3};
 //! # fn main() -> Result<(), reorder::OrderError> {
 //! let helix = |t: f64| Vector3::new(t.cos(), t.sin(), 0.3 * t);
-//! let shuffled = [0.6, 0.0, 1.2, 0.9, 0.3, 1.5].map(helix);
+//! let shuffled = [0.6, 0.0, 1.2, 0.9, 2.1, 0.3, 1.5, 1.8].map(helix);
 //! let ordering = order(&R3::default(), &shuffled, &Options::default())?;
-//! assert_eq!(ordering.order, [1, 4, 0, 3, 2, 5]);
+//! assert_eq!(ordering.order, [1, 5, 0, 3, 2, 6, 7, 4]);
 //! assert_eq!((ordering.topology, ordering.verdict), (Topology::Open, Verdict::Plausible));
 //! # Ok(()) }
 //! ```
@@ -30,6 +30,9 @@
 //! - both ends come near each other, but do not clearly meet;
 //! - two neighbours lie on each other's cut locus;
 //! - two neighbours both occur more than once;
+//! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, as where a curve runs back beside
+//!   itself;
+//! - there are three to seven distinct points: too few to tell one curve from another;
 //! - for poses: the order changes when a radian counts for half or for twice as many metres.
 //!
 //! What it cannot see: a curve that runs back along itself while its points happen to fall evenly between each other, or
@@ -37,8 +40,9 @@
 //!
 //! # Open or closed
 //!
-//! Told from the ends of the path: closed if their distance is at most 1.5 times the longest gap and at most twice the longest of the
-//! five gaps next to either end, and the curve turns by less than 90° at both ends.
+//! Told from the ends of the path: closed if their distance is at most 1.1 times the longest gap (up to 1.5 times where the gaps next
+//! to the ends are as uneven) and at most twice the longest of the five gaps next to either end, and the curve turns by less
+//! than 90° at both ends.
 
 mod curve;
 mod doubts;

@@ -6,9 +6,10 @@ use crate::curve::Curve;
 
 /// How many gaps next to an end say what is usual there.
 const LOCAL_GAPS: usize = 5;
-/// The closing gap may be this many times the longest gap: a minimum spanning tree leaves out the longest edge of a loop, which
-/// on a fairly even sample is not much longer than the next.
-const CLOSING_TO_LONGEST: f64 = 1.5;
+/// The closing gap may be as many times the longest gap as the gaps next to the ends differ among themselves, but no less and no
+/// more than this: a minimum spanning tree leaves out the longest edge of a loop, which on an even sample is hardly longer than
+/// the next. An even arc whose ends are one and a half gaps apart is an open arc.
+const CLOSING_TO_LONGEST: [f64; 2] = [1.1, 1.5];
 /// … and this many times the longest of the gaps next to both ends.
 const CLOSING_TO_LOCAL: f64 = 2.0;
 
@@ -23,9 +24,9 @@ pub(crate) enum Closing {
     Apart,
 }
 
-/// The ends meet where the closing gap is ≤ 1.5 × the longest gap and ≤ 2 × the longest of the five gaps next to either end, and
-/// the curve turns by less than 90° (by log) at both ends. They are near if only the gap is short enough, or if the gap is up to
-/// twice those bounds and the curve goes on so.
+/// The ends meet where the closing gap is ≤ 1.1 to 1.5 × the longest gap (the more, the less even the ten gaps next to the ends
+/// are) and ≤ 2 × the longest of the five gaps next to either end, and the curve turns by less than 90° (by log) at both ends.
+/// They are near if only the gap is short enough, or if the gap is up to twice 1.5 times those bounds and the curve goes on so.
 pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
     let last = path.len() - 1;
     if last < 2 {
@@ -33,14 +34,16 @@ pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
     }
     let gaps = path.gaps();
     let [local_first, local_last] = beyond_ends(&gaps);
-    let allowed = (CLOSING_TO_LONGEST * longest(&gaps)).min(local_first.max(local_last));
+    let [even, uneven] = CLOSING_TO_LONGEST;
+    let within = |factor: f64| (factor * longest(&gaps)).min(local_first.max(local_last));
+    let (allowed, suspicious) = (within(spread_at_ends(&gaps).clamp(even, uneven)), 2.0 * within(uneven));
     let closing_gap = path.distance(0, last);
     let goes_on = |at, before, after| path.cosine(at, before, after).is_some_and(|c| c < 0.0);
     let goes_on = goes_on(0, last, 1) && goes_on(last, last - 1, 0);
     match (closing_gap <= allowed, goes_on) {
         (true, true) => Closing::Meets,
         (true, false) => Closing::Near,
-        (false, true) if closing_gap <= 2.0 * allowed => Closing::Near,
+        (false, true) if closing_gap <= suspicious => Closing::Near,
         (false, _) => Closing::Apart,
     }
 }
@@ -59,6 +62,13 @@ pub(crate) fn rotate_to(rows: &mut [usize], first: usize) {
 pub(crate) fn beyond_ends(gaps: &[f64]) -> [f64; 2] {
     let k = LOCAL_GAPS.min(gaps.len());
     [&gaps[..k], &gaps[gaps.len() - k..]].map(|some| CLOSING_TO_LOCAL * longest(some))
+}
+
+/// Ratio of the longest to the shortest of the gaps next to the ends.
+fn spread_at_ends(gaps: &[f64]) -> f64 {
+    let k = LOCAL_GAPS.min(gaps.len());
+    let near = || gaps[..k].iter().chain(&gaps[gaps.len() - k..]).copied();
+    near().fold(0.0, f64::max) / near().fold(f64::INFINITY, f64::min)
 }
 
 fn longest(gaps: &[f64]) -> f64 {

@@ -253,19 +253,72 @@ fn no_wrong_order_of_uneven_clean_samples_is_believed() {
 
 #[test]
 fn json_has_the_fixed_shape() {
-    let poses: Vec<Pose> = (0..4).map(|k| helix_pose(0.05 * f64::from(k))).collect();
-    let options = Options { topology: TopologyChoice::Open, start: Some(3) };
+    let poses: Vec<Pose> = (0..8).map(|k| helix_pose(0.05 * f64::from(k))).collect();
+    let options = Options { topology: TopologyChoice::Open, start: Some(7) };
     let mut json = serde_json::to_value(order_poses(&poses, 0.5, &options).unwrap()).unwrap();
     let certificate = json.as_object_mut().unwrap().remove("certificate").unwrap();
     assert_eq!(
         json,
         serde_json::json!({
-            "n": 4, "order": [3, 2, 1, 0], "topology": "open", "method": "mst", "verdict": "plausible", "weight_stable": true,
-            "metres_per_radian": 0.5, "components": [[3, 2, 1, 0]], "duplicates": [], "doubts": []
+            "n": 8, "order": [7, 6, 5, 4, 3, 2, 1, 0], "topology": "open", "method": "mst", "verdict": "plausible", "weight_stable": true,
+            "metres_per_radian": 0.5, "components": [[7, 6, 5, 4, 3, 2, 1, 0]], "duplicates": [], "doubts": []
         })
     );
     let mut keys: Vec<_> = certificate.as_object().unwrap().keys().cloned().collect();
     keys.sort_unstable();
     assert_eq!(keys, ["epsilon", "injectivity_radius", "margin", "max_gap", "reach"]);
     assert_eq!(certificate["injectivity_radius"], 0.5 * std::f64::consts::PI);
+}
+
+/// A line drawn back over itself with the points of the way back between those of the way there: an interleaved order is the
+/// shortest tree, no branch shows, and it is wholly wrong. Only the alternating gaps give it away.
+#[test]
+fn a_stroke_drawn_back_between_its_own_points_is_doubted() {
+    for shift in [0.3, 0.4, 0.42, 0.58, 0.7] {
+        for aside in [0.0, 0.05] {
+            let there = (0..15).map(|k| (f64::from(k), 0.0));
+            let back = (0..15).rev().map(|k| (f64::from(k) + shift, aside));
+            let found = in_plane(&there.chain(back).collect::<Vec<_>>());
+            assert_eq!(found.verdict, Verdict::Ambiguous, "shift {shift}");
+            assert!(reasons(&found).contains("run back beside itself"), "{}", reasons(&found));
+        }
+    }
+    // Jitter of a tenth of a step makes gaps uneven too, but in no such pattern.
+    let jittered = line((0..60).map(|k| f64::from(k) + 0.1 * (f64::from(k * k) * 1.7).sin()));
+    assert_eq!(in_plane(&jittered).verdict, Verdict::Plausible);
+}
+
+/// An even arc is open as long as its ends are visibly farther apart than its points, and closed when they are not.
+#[test]
+fn an_even_arc_with_a_small_opening_is_not_called_closed() {
+    for n in [12, 30, 100] {
+        let circle = |opening: f64| -> Vec<(f64, f64)> {
+            let step = std::f64::consts::TAU / (f64::from(n) - 1.0 + opening);
+            (0..n).map(|k| (step * f64::from(k)).sin_cos()).collect()
+        };
+        for opening in [1.2, 1.4, 1.49] {
+            let found = in_plane(&circle(opening));
+            assert!(found.topology == Topology::Open && found.verdict == Verdict::Ambiguous, "{n} {opening}");
+        }
+        let closed = in_plane(&circle(1.05));
+        assert_eq!(
+            (closed.topology, closed.verdict),
+            (Topology::Closed, Verdict::Plausible),
+            "{n}: {}",
+            reasons(&closed)
+        );
+        let open = in_plane(&circle(6.0));
+        assert_eq!((open.topology, open.verdict), (Topology::Open, Verdict::Plausible), "{n}: {}", reasons(&open));
+    }
+}
+
+#[test]
+fn a_handful_of_points_is_no_evidence() {
+    for n in 3..8 {
+        let found = in_plane(&line((0..n).map(f64::from)));
+        assert_eq!(found.verdict, Verdict::Ambiguous);
+        assert!(reasons(&found).contains("too few to tell"), "{}", reasons(&found));
+    }
+    assert_eq!(in_plane(&line((0..2).map(f64::from))).verdict, Verdict::Plausible, "two points have one order");
+    assert_eq!(in_plane(&line((0..8).map(f64::from))).verdict, Verdict::Plausible);
 }

@@ -51,8 +51,8 @@ mod se3;
 mod sim2;
 mod so2;
 mod so3;
-mod spline_error;
 mod sphere;
+mod spline_error;
 mod spline_rates;
 mod twist;
 

@@ -17,9 +17,13 @@ use crate::twist::Twist;
 /// How close to half a turn two successive rotations may come, in rad. Nearer than that rounding would choose the side.
 pub const HALF_TURN_MARGIN_RAD: f64 = 1e-9;
 
-/// By how much the angle that a segment turns through may exceed the angle between its two rotations, in rad. More means that
-/// the curve winds, which very uneven knots can cause.
+/// By how much the angle that a segment turns through may exceed the angle between its two rotations at most, in rad. More
+/// means that the curve winds, which very uneven knots can cause.
 pub const WINDING_BOUND_RAD: f64 = PI;
+
+/// By how many times the largest step near a segment (its own or a neighbour's) its length may exceed its own step. A smooth
+/// curve exceeds it by per cents, one round a sharp corner by a fraction of the step, one that winds or overshoots by several.
+const DETOUR: f64 = 2.0;
 
 /// What holds at the ends of a [`PoseSpline`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -95,13 +99,53 @@ impl PoseSpline {
             let ends = [poses[i].translation.vector, poses[j].translation.vector];
             let position = Cubic::bent(h, ends, [bends[i], bends[j]]);
             let rotation = RotationSegment::new(&poses[i].rotation, turns[i], h, chart_bends[i]);
-            let difference_rad = turns[i].norm();
-            if let Some(turned_rad) = rotation.turned_beyond(h, difference_rad + WINDING_BOUND_RAD) {
-                return Err(SplineError::Winding { from: i, to: j, turned_rad, difference_rad });
-            }
             segments.push(Segment { position, rotation });
         }
-        Ok(Self { knots: knots.to_vec(), segments, closed })
+        let spline = Self { knots: knots.to_vec(), segments, closed };
+        spline.refuse_detours(poses.len(), &steps, &turns)?;
+        Ok(spline)
+    }
+
+    /// Refuses segments that go much farther than the poses between which they lead.
+    fn refuse_detours(&self, poses: usize, steps: &[Vector3<f64>], turns: &[Vector3<f64>]) -> Result<(), SplineError> {
+        for i in 0..steps.len() {
+            let largest_near = |parts: &[Vector3<f64>]| {
+                let near = i.saturating_sub(1)..(i + 2).min(parts.len());
+                parts[near].iter().map(|part| part.norm()).fold(0.0, f64::max)
+            };
+            let (distance_m, difference_rad) = (steps[i].norm(), turns[i].norm());
+            let (from, to) = (i, (i + 1) % poses);
+            let allowed_rad = (DETOUR * largest_near(turns)).min(WINDING_BOUND_RAD);
+            // Rounding of what was subtracted to get the parts.
+            let slack = 1e-9;
+            let most_rad = difference_rad + allowed_rad + slack;
+            let most_m = distance_m + DETOUR * largest_near(steps) + slack;
+            let (Segment { position, rotation }, h) = (&self.segments[i], self.knots[i + 1] - self.knots[i]);
+            if rotation.turned_at_most(h) <= most_rad && position.length_bound(h) <= most_m {
+                continue;
+            }
+            let [travelled_m, turned_rad] = self.lengths(i);
+            // Written so that NaN is refused.
+            let turns_little = turned_rad <= most_rad;
+            if !turns_little {
+                return Err(SplineError::Winding { from, to, turned_rad, difference_rad });
+            }
+            let goes_straight = travelled_m <= most_m;
+            if !goes_straight {
+                return Err(SplineError::Overshoot { from, to, travelled_m, distance_m });
+            }
+        }
+        Ok(())
+    }
+
+    /// Length of a segment's position and angle of its rotation, by the midpoint rule. Sixteen points measure to a few per cent
+    /// what the bounds must tell: whether the curve goes somewhere else.
+    fn lengths(&self, segment: usize) -> [f64; 2] {
+        const POINTS: usize = 16;
+        let step = (self.knots[segment + 1] - self.knots[segment]) / POINTS as f64;
+        let twist = |k: usize| self.in_segment(segment, (k as f64 + 0.5) * step).twist;
+        let add = |[p, r]: [f64; 2], twist: Twist| [p + twist.linear.norm() * step, r + twist.angular.norm() * step];
+        (0..POINTS).map(twist).fold([0.0; 2], add)
     }
 
     /// The parameter at every pose, increasing; on a closed curve also the one at which the first pose is reached again.
@@ -228,3 +272,7 @@ fn ends_of_parts(ends: Ends, first: &Pose, last: &Pose) -> Result<(CubicEnds<3>,
 #[cfg(test)]
 #[path = "pose_spline_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "pose_spline_edge_tests.rs"]
+mod edge_tests;

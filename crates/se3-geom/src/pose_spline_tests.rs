@@ -1,5 +1,7 @@
 //! The promises of [`PoseSpline`], tested by their definitions.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use proptest::prelude::*;
 
 use super::*;
@@ -44,11 +46,26 @@ fn knots_for(poses: &[Pose], ends: Ends) -> Vec<f64> {
     centripetal_knots(&Se3::default(), &loop_of)
 }
 
+/// How many random curves were fitted and how many refused, over all tests of this process.
+static FITTED: AtomicUsize = AtomicUsize::new(0);
+static REFUSED: AtomicUsize = AtomicUsize::new(0);
+
 fn fit(poses: &[Pose], ends: Ends) -> Option<PoseSpline> {
     match PoseSpline::through(poses, &knots_for(poses, ends), ends) {
-        Ok(spline) => Some(spline),
+        Ok(spline) => {
+            FITTED.fetch_add(1, Ordering::Relaxed);
+            Some(spline)
+        }
         // A random closing segment may be half a turn, or wind: both are named refusals, not curves.
-        Err(SplineError::HalfTurn { .. } | SplineError::Winding { .. }) => None,
+        Err(SplineError::HalfTurn { .. } | SplineError::Winding { .. } | SplineError::Overshoot { .. }) => {
+            let refused = REFUSED.fetch_add(1, Ordering::Relaxed);
+            let fitted = FITTED.load(Ordering::Relaxed);
+            assert!(
+                refused < 20 + fitted,
+                "more refused than fitted: the laws are hardly tested ({refused}, {fitted})"
+            );
+            None
+        }
         Err(other) => panic!("{other}"),
     }
 }
@@ -198,8 +215,8 @@ fn converges_with_fourth_order() {
 }
 
 #[test]
-fn steep_turns_and_uneven_knots_are_solved() {
-    // 175° between knots, alternating axes, knot ratio 1000.
+fn steep_turns_are_solved() {
+    // 175° between knots, alternating axes.
     let mut now = UnitQuaternion::identity();
     let mut poses = vec![Pose::from_parts(Vector3::zeros().into(), now)];
     for i in 0..12 {

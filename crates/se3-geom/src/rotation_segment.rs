@@ -36,21 +36,9 @@ impl RotationSegment {
         self.midpoint * So3Group::exp(self.chart.value(t))
     }
 
-    /// The angle ∫‖ω‖dt turned through on \[0, h\] where that may exceed `most`, by the midpoint rule: sixteen points measure
-    /// to a few per cent. Mostly the chart tells that it does not, for ‖ω‖ ≤ ‖φ̇‖.
-    pub(crate) fn turned_beyond(&self, h: f64, most: f64) -> Option<f64> {
-        const POINTS: usize = 16;
-        if self.chart.length_bound(h) <= most {
-            return None;
-        }
-        let step = h / POINTS as f64;
-        let rate = |t: f64| {
-            let [phi, p, ..] = self.chart.at(t);
-            So3Group::right_jacobian(phi) * p
-        };
-        let turned = (0..POINTS).map(|k| rate((k as f64 + 0.5) * step).norm() * step).sum();
-        // Not `turned > most`: refuses what is not a number, too.
-        if turned <= most { None } else { Some(turned) }
+    /// At least the angle turned through over \[0, h\]: the chart's length, since Jr shortens vectors.
+    pub(crate) fn turned_at_most(&self, h: f64) -> f64 {
+        self.chart.length_bound(h)
     }
 
     /// ω = φ̇ − b φ×φ̇ + c φ×(φ×φ̇) and its first two derivatives.

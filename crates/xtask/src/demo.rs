@@ -1,14 +1,14 @@
 //! The main job for real: recorded, shuffled poses through rclpy, the node, rclpy again and MuJoCo.
 
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::Stdio;
 
 use serde_json::{Value, json};
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
+use crate::process::Running;
 use crate::setup;
 
 const PEER_TIMEOUT_S: &str = "60";
@@ -38,7 +38,7 @@ pub(crate) fn run(layout: &Layout) -> Outcome {
     let faults: Vec<_> = runs.iter().flat_map(faults).collect();
     write_json(&out.join("summary.json"), &json!({ "runs": runs }))?;
     println!("{}", out.join("summary.json").display());
-    if faults.is_empty() { Ok(()) } else { Err(step("the demo", faults.join("; "))) }
+    if faults.is_empty() { Ok(()) } else { Err(Failure::step("the demo", faults.join("; "))) }
 }
 
 struct Binaries {
@@ -70,7 +70,7 @@ fn build(layout: &Layout) -> Outcome<Binaries> {
         .collect();
     let find = |name: &str| {
         let found = executables.iter().find(|path| path.file_name().is_some_and(|file| file == name));
-        found.cloned().ok_or_else(|| step("cargo build", format!("no executable {name} was built")))
+        found.cloned().ok_or_else(|| Failure::step("cargo build", format!("no executable {name} was built")))
     };
     Ok(Binaries { node: find("reorder_node")?, simulate: find("reorder-simulate")? })
 }
@@ -84,7 +84,11 @@ fn recordings(layout: &Layout) -> Outcome<Vec<PathBuf>> {
         .filter(|path| path.to_string_lossy().ends_with(".truth.json"))
         .collect();
     truths.sort();
-    if truths.is_empty() { Err(step("the demo", format!("no recording in {}", folder.display()))) } else { Ok(truths) }
+    if truths.is_empty() {
+        Err(Failure::step("the demo", format!("no recording in {}", folder.display())))
+    } else {
+        Ok(truths)
+    }
 }
 
 fn run_shape(layout: &Layout, binaries: &Binaries, truth_file: &Path, out: &Path) -> Outcome<Value> {
@@ -130,8 +134,8 @@ fn run_shape(layout: &Layout, binaries: &Binaries, truth_file: &Path, out: &Path
 
 /// Node, receiver and publisher as three processes in a ROS domain of their own.
 fn exchange(layout: &Layout, binaries: &Binaries, robot: &str, bag: &Path, folder: &Path) -> Outcome {
-    // 1 … 100 are free for users on every platform.
-    let domain = (1 + std::process::id() % 100).to_string();
+    // 1 … 100 are free for users on every platform; the tests have theirs above 60.
+    let domain = (1 + std::process::id() % 60).to_string();
     let ros = |program: &Path| {
         let mut command = layout.command(program);
         command.env("ROS_DOMAIN_ID", &domain).stdin(Stdio::null());
@@ -178,7 +182,7 @@ fn simulate(layout: &Layout, binaries: &Binaries, robot: &str, bag: &Path, folde
     if !output.status.success() {
         return Err(Failure::Command { what: "reorder-simulate".into(), status: output.status });
     }
-    serde_json::from_slice(&output.stdout).map_err(|error| step("reorder-simulate", error.to_string()))
+    serde_json::from_slice(&output.stdout).map_err(|error| Failure::step("reorder-simulate", error.to_string()))
 }
 
 /// The trajectory as it was received, in the form of `reorder plan`.
@@ -263,76 +267,23 @@ fn print_table(runs: &[Value]) {
             number("/max_ratio/velocity", 1.0),
             number("/max_ratio/acceleration", 1.0),
             number("/max_ratio/jerk", 1.0),
-            number("/tracking_max_rad", 1e3),
-            number("/pose_error_max_m", 1e3),
-            number("/pose_error_max_rad", 1e3),
+            number("/tracking_max_rad", 1e6),
+            number("/pose_error_max_m", 1e6),
+            number("/pose_error_max_rad", 1e6),
             run["contacts"].to_string(),
         );
     }
     println!();
 }
 
-/// A child process that does not outlive this one's interest in it.
-struct Running {
-    name: &'static str,
-    child: Child,
-}
-
-impl Running {
-    fn start(name: &'static str, command: &mut Command) -> Outcome<Self> {
-        let child = command.spawn().map_err(Failure::io("run", name))?;
-        Ok(Self { name, child })
-    }
-
-    /// Reads its standard output up to a line; the rest is read and dropped on a thread, so that it never blocks.
-    fn wait_for_line(&mut self, wanted: &str) -> Outcome {
-        let ended = || step(self.name, format!("it ended before it printed {wanted}"));
-        let mut output = BufReader::new(self.child.stdout.take().ok_or_else(ended)?);
-        let mut line = String::new();
-        while line.trim() != wanted {
-            line.clear();
-            if output.read_line(&mut line).map_err(Failure::io("read from", self.name))? == 0 {
-                return Err(ended());
-            }
-        }
-        std::thread::spawn(move || std::io::copy(&mut output, &mut std::io::sink()));
-        Ok(())
-    }
-
-    /// Waits for it; both peers have a timeout of their own.
-    fn finish(mut self) -> Outcome {
-        let status = self.child.wait().map_err(Failure::io("wait for", self.name))?;
-        if status.success() { Ok(()) } else { Err(Failure::Command { what: self.name.into(), status }) }
-    }
-
-    /// Asks it to end as Ctrl-C does, and expects a clean exit.
-    fn interrupt(self) -> Outcome {
-        let process = self.child.id().to_string();
-        Command::new("kill").args(["-INT", &process]).status().map_err(Failure::io("run", "kill"))?;
-        self.finish()
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        // Already ended in the ordinary case; nothing can be done about a child that cannot be killed.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-fn step(what: &str, detail: String) -> Failure {
-    Failure::Step { what: what.to_owned(), detail }
-}
-
 fn text(value: &Value, key: &str, file: &Path) -> Outcome<String> {
-    let missing = || step("the demo", format!("{} has no {key}", file.display()));
+    let missing = || Failure::step("the demo", format!("{} has no {key}", file.display()));
     value[key].as_str().map(str::to_owned).ok_or_else(missing)
 }
 
 fn read_json(path: &Path) -> Outcome<Value> {
     let text = fs::read_to_string(path).map_err(Failure::io("read", path))?;
-    serde_json::from_str(&text).map_err(|error| step("the demo", format!("{}: {error}", path.display())))
+    serde_json::from_str(&text).map_err(|error| Failure::step("the demo", format!("{}: {error}", path.display())))
 }
 
 fn write_json(path: &Path, value: &Value) -> Outcome {

@@ -33,6 +33,11 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// What failed, and why.
+    pub(crate) fn step(what: &str, detail: String) -> Self {
+        Self::Step { what: what.to_owned(), detail }
+    }
+
     /// For `map_err` on a file operation.
     pub(crate) fn io(action: &'static str, path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.into();

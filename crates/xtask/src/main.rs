@@ -4,6 +4,7 @@ mod demo;
 mod env;
 mod failure;
 mod mujoco;
+mod process;
 mod python;
 mod ros;
 mod setup;

@@ -1,0 +1,55 @@
+//! Child processes that work together.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command};
+
+use crate::failure::{Failure, Outcome};
+
+/// A child process that does not outlive this one's interest in it.
+pub(crate) struct Running {
+    name: &'static str,
+    child: Child,
+}
+
+impl Running {
+    pub(crate) fn start(name: &'static str, command: &mut Command) -> Outcome<Self> {
+        let child = command.spawn().map_err(Failure::io("run", name))?;
+        Ok(Self { name, child })
+    }
+
+    /// Reads its standard output up to a line; the rest is read and dropped on a thread, so that it never blocks.
+    pub(crate) fn wait_for_line(&mut self, wanted: &str) -> Outcome {
+        let ended = || Failure::step(self.name, format!("it ended before it printed {wanted}"));
+        let mut output = BufReader::new(self.child.stdout.take().ok_or_else(ended)?);
+        let mut line = String::new();
+        while line.trim() != wanted {
+            line.clear();
+            if output.read_line(&mut line).map_err(Failure::io("read from", self.name))? == 0 {
+                return Err(ended());
+            }
+        }
+        std::thread::spawn(move || std::io::copy(&mut output, &mut std::io::sink()));
+        Ok(())
+    }
+
+    /// Waits for it; both peers have a timeout of their own.
+    pub(crate) fn finish(mut self) -> Outcome {
+        let status = self.child.wait().map_err(Failure::io("wait for", self.name))?;
+        if status.success() { Ok(()) } else { Err(Failure::Command { what: self.name.into(), status }) }
+    }
+
+    /// Asks it to end as Ctrl-C does, and expects a clean exit.
+    pub(crate) fn interrupt(self) -> Outcome {
+        let process = self.child.id().to_string();
+        Command::new("kill").args(["-INT", &process]).status().map_err(Failure::io("run", "kill"))?;
+        self.finish()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // Already ended in the ordinary case; nothing can be done about a child that cannot be killed.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
