@@ -261,7 +261,7 @@ fn group_laws<G: Coordinates>() {
 /// half-angle functions at √10, of φ at 1e-8 and of φ′ at 1; and in between.
 const SLOPE_ANGLES: [f64; 17] = [
     0.0, 1e-9, 0.99e-8, 1.01e-8, 1e-3, 0.3, 0.499_999, 0.500_001, 0.999_999, 1.000_001, 1.999_999, 2.000_001, 2.7,
-    3.14, 3.162_277, 3.162_278, 5.0,
+    3.12, 3.162_277, 3.162_278, 5.0,
 ];
 const STEP: f64 = 0.2;
 
