@@ -249,9 +249,9 @@ fn print_table(runs: &[Value]) {
         "v/lim",
         "a/lim",
         "j/lim",
-        "track/mrad",
-        "pose/mm",
-        "pose/mrad",
+        "track/µrad",
+        "pose/µm",
+        "pose/µrad",
         "contacts"
     );
     for run in runs {
