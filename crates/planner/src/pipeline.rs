@@ -254,49 +254,5 @@ fn accuracy(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Two joint points a tenth of a second apart, at rest: legal if they are near each other.
-    fn move_by(rad: f64) -> JointTrajectory {
-        let robot = Robot::shipped("ur5e").unwrap();
-        let from = DVector::from_element(6, -1.0);
-        let mut trajectory = rest_to_rest(&robot, &from, &from.add_scalar(rad), &Default::default()).unwrap();
-        let seconds = trajectory.duration_s();
-        trajectory.points.iter_mut().for_each(|point| point.time_s *= 0.1 / seconds);
-        trajectory
-    }
-
-    /// Squeezed into a tenth of a second without its derivatives, a move breaks its limits and the gate stays shut.
-    #[test]
-    fn a_trajectory_that_fails_its_audit_is_withheld() {
-        let robot = Robot::shipped("ur5e").unwrap();
-        assert!(matches!(passed_audit(&robot, &move_by(0.5)), Err(Refusal::Limits(_))));
-        let from = DVector::from_element(6, -1.0);
-        let legal = rest_to_rest(&robot, &from, &from.add_scalar(0.5), &Default::default()).unwrap();
-        assert!(passed_audit(&robot, &legal).unwrap().limits_ok);
-    }
-
-    /// A pose that the tool is not at, in position or in orientation, is named.
-    #[test]
-    fn a_pose_that_is_missed_is_refused_by_its_index() {
-        let robot = Robot::shipped("ur5e").unwrap();
-        let config = Config::default();
-        let from = DVector::from_element(6, -1.0);
-        let trajectory = rest_to_rest(&robot, &from, &from.add_scalar(0.5), &config.timing).unwrap();
-        let there = |time: f64| robot.chain.forward(&trajectory.at(time)[0]);
-        let times = [0.0, 0.5 * trajectory.duration_s()];
-        let mut poses = times.map(there);
-        assert!(accuracy(&robot, &config, &poses, &trajectory, &times).is_ok());
-        poses[1].translation.vector.x += 3.0 * config.path.tolerance_m;
-        let refused = accuracy(&robot, &config, &poses, &trajectory, &times);
-        assert!(matches!(refused, Err(Refusal::Accuracy { input_pose: 1, .. })));
-        poses[1] = there(times[1]);
-        let tilt = Pose::rotation(manipulator::nalgebra::Vector3::x() * 3.0 * config.path.tolerance_rad);
-        poses[0] *= tilt;
-        let refused = accuracy(&robot, &config, &poses, &trajectory, &times);
-        assert!(matches!(refused, Err(Refusal::Accuracy { input_pose: 0, .. })));
-        // A time that is no number is not a pose that was passed.
-        assert!(accuracy(&robot, &config, &[there(0.0)], &trajectory, &[f64::NAN]).is_err());
-    }
-}
+#[path = "pipeline_tests.rs"]
+mod tests;

@@ -54,24 +54,19 @@ pub(crate) fn path_message(poses: &[Pose], header: Header) -> Path {
 
 /// A zero stamp in the header asks the controller to start at once.
 pub(crate) fn trajectory_message(planned: &JointTrajectory, base_frame: &str) -> trajectory::JointTrajectory {
-    let points = planned.points.iter().map(|point| trajectory::JointTrajectoryPoint {
-        positions: point.positions.clone(),
-        velocities: point.velocities.clone(),
-        accelerations: point.accelerations.clone(),
-        effort: Vec::new(),
-        time_from_start: duration(point.time_s),
+    let recorded = planner::trajectory_message(planned, Default::default());
+    let points = recorded.points.into_iter().map(|point| trajectory::JointTrajectoryPoint {
+        positions: point.positions,
+        velocities: point.velocities,
+        accelerations: point.accelerations,
+        effort: point.effort,
+        time_from_start: Duration { sec: point.time_from_start.sec, nanosec: point.time_from_start.nanosec },
     });
     trajectory::JointTrajectory {
         header: header(base_frame, 0),
-        joint_names: planned.joint_names.clone(),
+        joint_names: recorded.joint_names,
         points: points.collect(),
     }
-}
-
-/// To the nearest nanosecond; trajectories start at 0 and last minutes, so the seconds fit.
-fn duration(time_s: f64) -> Duration {
-    let nanos = (time_s * NANOS as f64).round() as i64;
-    Duration { sec: (nanos / NANOS) as i32, nanosec: (nanos % NANOS) as u32 }
 }
 
 #[cfg(test)]
@@ -96,11 +91,5 @@ mod tests {
             assert!((a - b).abs() < 1e-15);
         }
         assert!((back.orientation.w - pose.orientation.w).abs() < 1e-15);
-    }
-
-    #[test]
-    fn durations_round_to_the_nearest_nanosecond() {
-        assert_eq!(duration(1.999_999_999_6), Duration { sec: 2, nanosec: 0 });
-        assert_eq!(duration(0.01), Duration { sec: 0, nanosec: 10_000_000 });
     }
 }

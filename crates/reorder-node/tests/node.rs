@@ -114,6 +114,19 @@ fn round_trip(domain: &Domain, shape: &str, signal: &str) {
     assert!(asked.elapsed() < Duration::from_secs(5), "{:?}", asked.elapsed());
 }
 
+/// What the receiver hears of poses that the node refuses, with no joint state. The node lives on, and leaves when it is asked to.
+fn refusal(domain: &Domain, bag: &str, out: &Path) -> String {
+    let node = domain.node(&PARAMETERS);
+    let receiver = domain.receiver(bag, out);
+    let (published, said) = domain.peer("publish_bag.py", &[bag]).finish();
+    assert!(published.success(), "{said}");
+    let (received, said) = receiver.finish();
+    assert_eq!(received.code(), Some(4), "{said}");
+    node.signal("-INT");
+    assert!(node.finish().0.success(), "a refusal is no reason to fall over");
+    said
+}
+
 #[test]
 fn poses_become_a_trajectory_and_ctrl_c_ends_the_node() {
     round_trip(&Domain(61), "lasa_angle", "-INT");
@@ -139,15 +152,8 @@ fn a_bad_pose_is_refused_by_its_index() {
     writer.write("/reorder/poses", 0, &msg::PoseArray { header, poses: vec![pose(1.0), pose(0.0)] }).unwrap();
     writer.finish().unwrap();
 
-    let node = domain.node(&PARAMETERS);
-    let receiver = domain.receiver(&bag, folder.path());
-    let (published, said) = domain.peer("publish_bag.py", &[&bag]).finish();
-    assert!(published.success(), "{said}");
-    let (received, said) = receiver.finish();
-    assert_eq!(received.code(), Some(4), "{said}");
+    let said = refusal(&domain, &bag, folder.path());
     assert_eq!(said.trim(), "Refused: pose 1: the quaternion is zero, so there is no orientation");
-    node.signal("-INT");
-    assert!(node.finish().0.success(), "a refusal is no reason to fall over");
 }
 
 /// Without a joint state nobody knows where the robot stands, and a trajectory would begin with a jump.
@@ -156,15 +162,8 @@ fn nothing_is_planned_for_a_robot_that_nobody_has_heard_of() {
     let domain = Domain(66);
     let folder = tempfile::tempdir().unwrap();
     let bag = format!("{ROOT}/tests/data/lasa_sine");
-    let node = domain.node(&PARAMETERS);
-    let receiver = domain.receiver(&bag, folder.path());
-    let (published, said) = domain.peer("publish_bag.py", &[&bag]).finish();
-    assert!(published.success(), "{said}");
-    let (received, said) = receiver.finish();
-    assert_eq!(received.code(), Some(4), "{said}");
+    let said = refusal(&domain, &bag, folder.path());
     assert!(said.starts_with("Refused: no joint state with all joints of ur5e has arrived"), "{said}");
-    node.signal("-INT");
-    assert!(node.finish().0.success());
 }
 
 #[test]
