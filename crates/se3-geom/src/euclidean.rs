@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::manifold::{CutLocus, Manifold};
+use crate::manifold::{LogError, Manifold};
 
 /// ℝᴺ with the ordinary distance; points and tangents are vectors.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -20,7 +20,7 @@ impl<const N: usize> Manifold for Euclidean<N> {
     fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
         p + v
     }
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
         Ok(q - p)
     }
     fn inner(&self, _: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {

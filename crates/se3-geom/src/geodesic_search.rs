@@ -7,36 +7,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::geodesic_flow::{Connection, flow};
-use crate::manifold::CutLocus;
-
-/// Why two points have no logarithm.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum GeodesicError {
-    /// The points lie on each other's cut locus.
-    #[error("two different geodesics of the same length {length} join the points, so the shortest is not unique")]
-    NotUnique {
-        /// Their length, which is the distance.
-        length: f64,
-    },
-    /// Newton's method did not arrive from any start.
-    #[error("no geodesic was found between the points: the nearest of {starts} shots missed the goal by {miss}")]
-    NotFound {
-        /// Least distance from the goal, in the coordinates of the points; infinite where no shot had a finite end.
-        miss: f64,
-        /// Number of starts.
-        starts: usize,
-    },
-}
-
-impl From<GeodesicError> for CutLocus {
-    fn from(error: GeodesicError) -> Self {
-        let distance = match error {
-            GeodesicError::NotUnique { length } => length,
-            GeodesicError::NotFound { .. } => f64::NAN,
-        };
-        Self { distance }
-    }
-}
+use crate::manifold::LogError;
 
 /// A shot that ends this close to the goal, relative to the coordinates and the length, has arrived. The flow's own error is
 /// 1e-13 a step and grows along the geodesic.
@@ -59,7 +30,7 @@ pub(crate) fn shortest_geodesic<const N: usize>(
     p: &SVector<f64, N>,
     q: &SVector<f64, N>,
     injectivity_radius: f64,
-) -> Result<SVector<f64, N>, GeodesicError> {
+) -> Result<SVector<f64, N>, LogError> {
     if p == q {
         return Ok(SVector::zeros());
     }
@@ -79,12 +50,12 @@ pub(crate) fn shortest_geodesic<const N: usize>(
         }
     }
     let best = found.iter().min_by(|u, v| length(u).total_cmp(&length(v))).copied();
-    let best = best.ok_or(GeodesicError::NotFound { miss: least_miss, starts: 1 + bows.len() })?;
+    let best = best.ok_or(LogError::NotFound { miss: least_miss, starts: 1 + bows.len() })?;
     let rivals = |v: &&SVector<f64, N>| {
         length(v) <= length(&best) * (1.0 + SAME_LENGTH) && (*v - best).norm() > SAME_VELOCITY * best.norm()
     };
     match found.iter().find(rivals) {
-        Some(_) => Err(GeodesicError::NotUnique { length: length(&best) }),
+        Some(_) => Err(LogError::CutLocus { distance: length(&best) }),
         None => Ok(best),
     }
 }
@@ -244,4 +215,12 @@ fn smoothed_descent<const N: usize>(space: &impl Connection<N>, path: &[SVector<
         *direction = space.project_tangent(node, direction);
     }
     forces
+}
+
+/// The distance where there is no logarithm: NaN where no geodesic was found.
+pub(crate) fn distance_without_log(error: LogError) -> f64 {
+    match error {
+        LogError::CutLocus { distance } => distance,
+        LogError::NotFound { .. } | LogError::NotAPoint => f64::NAN,
+    }
 }

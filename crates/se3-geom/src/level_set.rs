@@ -3,8 +3,8 @@
 use nalgebra::{SMatrix, SVector, Vector1, Vector4};
 
 use crate::geodesic_flow::{Connection, flow};
-use crate::geodesic_search::{GeodesicError, shortest_geodesic};
-use crate::manifold::{CutLocus, Manifold};
+use crate::geodesic_search::{distance_without_log, shortest_geodesic};
+use crate::manifold::{LogError, Manifold};
 
 /// K equations F(x) = 0 in ℝᴺ with their first and second derivatives; DF must have rank K on the level set.
 pub trait Constraint<const N: usize, const K: usize> {
@@ -99,14 +99,6 @@ impl<C: Constraint<N, K>, const N: usize, const K: usize> LevelSet<C, N, K> {
         normal_part.map_or(SVector::repeat(f64::NAN), |normal| v - normal)
     }
 
-    /// The logarithm, with the reason where there is none.
-    ///
-    /// # Errors
-    /// [`GeodesicError::NotUnique`] on the cut locus, [`GeodesicError::NotFound`] where no start led to the goal.
-    pub fn try_log(&self, p: &SVector<f64, N>, q: &SVector<f64, N>) -> Result<SVector<f64, N>, GeodesicError> {
-        shortest_geodesic(self, p, q, self.injectivity_radius)
-    }
-
     /// The shortest vector n with DF·n = c: Dᵀ(DDᵀ)⁻¹c.
     fn normal_lift(&self, x: &SVector<f64, N>, c: &SVector<f64, K>) -> Option<SVector<f64, N>> {
         let jacobian = self.constraint.jacobian(x);
@@ -140,8 +132,8 @@ impl<C: Constraint<N, K>, const N: usize, const K: usize> Manifold for LevelSet<
     fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
         flow(self, [*p, v]).map_or(SVector::repeat(f64::NAN), |[end, _]| end)
     }
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
-        Ok(self.try_log(p, q)?)
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
+        shortest_geodesic(self, p, q, self.injectivity_radius)
     }
     fn inner(&self, _: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
         u.dot(&v)
@@ -152,7 +144,7 @@ impl<C: Constraint<N, K>, const N: usize, const K: usize> Manifold for LevelSet<
     /// As on [`MongePatch`](crate::MongePatch): exactly symmetric, NaN where no geodesic was found.
     fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
         let (from, goal) = if p.as_slice() <= q.as_slice() { (p, q) } else { (q, p) };
-        self.log(from, goal).map_or_else(|cut| cut.distance, |v| v.norm())
+        self.log(from, goal).map_or_else(distance_without_log, |v| v.norm())
     }
     /// The lower bound given to [`LevelSet::new`].
     fn injectivity_radius(&self) -> f64 {

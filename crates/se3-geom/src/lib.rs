@@ -61,10 +61,9 @@ pub use curve::{
     Parameterisation, PartialGeodesic, PoseJet, Screw, arc_length, centripetal_knots, curvature,
 };
 pub use euclidean::{Euclidean, R2, R3};
-pub use geodesic_search::GeodesicError;
 pub use group::{LieGroup, NoLogarithm, Se2Group, Se3Group, Sim2Group, So2Group, So3Group};
 pub use level_set::{Constraint, LevelSet, UnitSegments};
-pub use manifold::{CutLocus, Manifold, Tangent};
+pub use manifold::{LogError, Manifold, Tangent};
 pub use monge::{HeightJet, MongePatch};
 pub use nalgebra;
 pub use nearest_rotation::{NearestRotationError, nearest_rotation};

@@ -9,15 +9,38 @@ pub trait Tangent:
 }
 impl<T> Tangent for T where T: Copy + Add<Output = T> + Sub<Output = T> + Neg<Output = T> + Mul<f64, Output = T> {}
 
-/// Two points between which the shortest geodesic is not unique, so that no logarithm exists.
-///
-/// Spaces whose logarithm is solved numerically ([`MongePatch`](crate::MongePatch), [`LevelSet`](crate::LevelSet)) return it
-/// too where the solver found no geodesic; their `try_log` methods tell the two apart.
+/// Why two points of a manifold have no logarithm.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("no unique shortest geodesic joins the two points: they lie on each other's cut locus (distance {distance})")]
-pub struct CutLocus {
-    /// Geodesic distance of the two points; NaN where no geodesic was found.
-    pub distance: f64,
+pub enum LogError {
+    /// The shortest geodesic between the points is not unique.
+    #[error(
+        "no unique shortest geodesic joins the two points: they lie on each other's cut locus (distance {distance})"
+    )]
+    CutLocus {
+        /// Geodesic distance of the two points; an angle in rad on spheres and rotation groups.
+        distance: f64,
+    },
+    /// No geodesic came out, on a space where they are found numerically.
+    #[error("no geodesic was found between the points: the nearest of {starts} shots missed the goal by {miss}")]
+    NotFound {
+        /// Least distance from the goal, in the coordinates of the points; infinite where no shot had a finite end.
+        miss: f64,
+        /// Number of starts.
+        starts: usize,
+    },
+    /// A point has no place on the manifold.
+    #[error("a point has a coordinate that is not a finite number, or a rotation of norm zero")]
+    NotAPoint,
+}
+
+impl LogError {
+    /// The same error on a product space, of which only one factor is at its cut locus.
+    pub(crate) fn at_distance(self, distance: f64) -> Self {
+        match self {
+            Self::CutLocus { .. } => Self::CutLocus { distance },
+            other => other,
+        }
+    }
 }
 
 /// A Riemannian manifold with its metric.
@@ -35,8 +58,9 @@ pub trait Manifold {
     /// The initial velocity of the shortest geodesic that leads from `p` to `q` in unit time.
     ///
     /// # Errors
-    /// [`CutLocus`] where that geodesic is not unique up to rounding.
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus>;
+    /// [`LogError::CutLocus`] where that geodesic is not unique up to rounding, [`LogError::NotFound`] where it is sought
+    /// numerically and not found, [`LogError::NotAPoint`] where the space can tell.
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError>;
 
     /// Inner product of two tangent vectors at `p`.
     fn inner(&self, p: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64;
@@ -63,8 +87,8 @@ pub trait Manifold {
     /// The point at fraction `t` of the shortest geodesic from `p` (t = 0) to `q` (t = 1).
     ///
     /// # Errors
-    /// [`CutLocus`] where that geodesic is not unique.
-    fn geodesic(&self, p: &Self::Point, q: &Self::Point, t: f64) -> Result<Self::Point, CutLocus> {
+    /// As [`log`](Self::log).
+    fn geodesic(&self, p: &Self::Point, q: &Self::Point, t: f64) -> Result<Self::Point, LogError> {
         Ok(self.exp(p, self.log(p, q)? * t))
     }
 }

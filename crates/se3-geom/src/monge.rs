@@ -3,8 +3,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 use crate::geodesic_flow::{Connection, flow};
-use crate::geodesic_search::{GeodesicError, shortest_geodesic};
-use crate::manifold::{CutLocus, Manifold};
+use crate::geodesic_search::{distance_without_log, shortest_geodesic};
+use crate::manifold::{LogError, Manifold};
 
 /// A height with its first and second derivatives at one point of the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,6 @@ pub struct HeightJet {
 /// point, first from the straight line of the plane. A geodesic shorter than the injectivity radius is the shortest. Where none was
 /// found, straight and bowed paths are shortened (relaxation) and shot from again, and the shortest geodesic of all is
 /// returned: **beyond the injectivity radius that is the best found, not a proven minimum**.
-/// [`try_log`](Self::try_log) tells why there is no logarithm.
 ///
 /// Where h or a derivative is not finite, results are NaN, which [`Manifold::is_finite`] sees.
 ///
@@ -69,14 +68,6 @@ impl<H: Fn(f64, f64) -> HeightJet> MongePatch<H> {
     pub fn embed_tangent(&self, p: &Vector2<f64>, v: Vector2<f64>) -> Vector3<f64> {
         Vector3::new(v.x, v.y, (self.height)(p.x, p.y).gradient.dot(&v))
     }
-
-    /// The logarithm, with the reason where there is none.
-    ///
-    /// # Errors
-    /// [`GeodesicError::NotUnique`] on the cut locus, [`GeodesicError::NotFound`] where no start led to the goal.
-    pub fn try_log(&self, p: &Vector2<f64>, q: &Vector2<f64>) -> Result<Vector2<f64>, GeodesicError> {
-        shortest_geodesic(self, p, q, self.injectivity_radius)
-    }
 }
 
 impl<H: Fn(f64, f64) -> HeightJet> Connection<2> for MongePatch<H> {
@@ -103,8 +94,8 @@ impl<H: Fn(f64, f64) -> HeightJet> Manifold for MongePatch<H> {
     fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
         flow(self, [*p, v]).map_or(SVector::repeat(f64::NAN), |[end, _]| end)
     }
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
-        Ok(self.try_log(p, q)?)
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
+        shortest_geodesic(self, p, q, self.injectivity_radius)
     }
     fn inner(&self, p: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
         let gradient = (self.height)(p.x, p.y).gradient;
@@ -117,7 +108,7 @@ impl<H: Fn(f64, f64) -> HeightJet> Manifold for MongePatch<H> {
     /// no geodesic was found.
     fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
         let (from, goal) = if p.as_slice() <= q.as_slice() { (p, q) } else { (q, p) };
-        self.log(from, goal).map_or_else(|cut| cut.distance, |v| self.norm(from, v))
+        self.log(from, goal).map_or_else(distance_without_log, |v| self.norm(from, v))
     }
     /// The lower bound given to [`MongePatch::new`].
     fn injectivity_radius(&self) -> f64 {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry2, UnitComplex};
 
-use crate::manifold::{CutLocus, Manifold};
+use crate::manifold::{LogError, Manifold};
 use crate::planar_twist::PlanarTwist;
 use crate::so2::So2;
 
@@ -47,8 +47,8 @@ impl Manifold for Se2 {
         let translation = p.translation.vector + p.rotation * v.linear;
         Isometry2::from_parts(translation.into(), So2.exp(&p.rotation, v.angular))
     }
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<PlanarTwist, CutLocus> {
-        let angular = So2.log(&p.rotation, &q.rotation).map_err(|_| CutLocus { distance: self.distance(p, q) })?;
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<PlanarTwist, LogError> {
+        let angular = So2.log(&p.rotation, &q.rotation).map_err(|e| e.at_distance(self.distance(p, q)))?;
         let linear = p.rotation.inverse() * (q.translation.vector - p.translation.vector);
         Ok(PlanarTwist { linear, angular })
     }

@@ -1,7 +1,7 @@
 //! Poses as a Riemannian manifold.
 
 use crate::group::{LieGroup, So3Group};
-use crate::manifold::{CutLocus, Manifold};
+use crate::manifold::{LogError, Manifold};
 use crate::pose::Pose;
 use crate::so3::So3;
 use crate::twist::Twist;
@@ -50,8 +50,8 @@ impl Manifold for Se3 {
         let translation = p.translation.vector + p.rotation * v.linear;
         Pose::from_parts(translation.into(), So3.exp(&p.rotation, v.angular))
     }
-    fn log(&self, p: &Pose, q: &Pose) -> Result<Twist, CutLocus> {
-        let angular = So3.log(&p.rotation, &q.rotation).map_err(|_| CutLocus { distance: self.distance(p, q) })?;
+    fn log(&self, p: &Pose, q: &Pose) -> Result<Twist, LogError> {
+        let angular = So3.log(&p.rotation, &q.rotation).map_err(|e| e.at_distance(self.distance(p, q)))?;
         let linear = p.rotation.inverse() * (q.translation.vector - p.translation.vector);
         Ok(Twist { linear, angular })
     }

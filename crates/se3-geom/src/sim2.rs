@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry2, Similarity2, UnitComplex};
 
-use crate::manifold::{CutLocus, Manifold};
+use crate::manifold::{LogError, Manifold};
 use crate::planar_twist::SimilarityTwist;
 use crate::so2::So2;
 
@@ -64,10 +64,9 @@ impl Manifold for Sim2 {
         // The clamp keeps the scale positive where e^λ leaves the range of numbers, |λ| > 708.
         Similarity2::from_isometry(isometry, (p.scaling() * v.scaling.exp()).clamp(f64::MIN_POSITIVE, f64::MAX))
     }
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<SimilarityTwist, CutLocus> {
-        let angular = So2
-            .log(&p.isometry.rotation, &q.isometry.rotation)
-            .map_err(|_| CutLocus { distance: self.distance(p, q) })?;
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<SimilarityTwist, LogError> {
+        let angular =
+            So2.log(&p.isometry.rotation, &q.isometry.rotation).map_err(|e| e.at_distance(self.distance(p, q)))?;
         let world = q.isometry.translation.vector - p.isometry.translation.vector;
         let linear = p.isometry.rotation.inverse() * world;
         Ok(SimilarityTwist { linear, angular, scaling: log_ratio(p.scaling(), q.scaling()) })

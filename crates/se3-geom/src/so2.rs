@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::UnitComplex;
 
-use crate::manifold::{CutLocus, Manifold};
+use crate::manifold::{LogError, Manifold};
 
 /// SO(2) with its bi-invariant metric: the distance of two rotations is the angle between them, in rad.
 ///
@@ -37,10 +37,14 @@ impl Manifold for So2 {
     fn exp(&self, p: &Self::Point, v: f64) -> Self::Point {
         p * UnitComplex::new(v)
     }
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<f64, CutLocus> {
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<f64, LogError> {
         let [sine, cosine] = relative(p, q);
         let angle = sine.atan2(cosine);
-        if sine.abs() < UNDECIDED && cosine < 0.0 { Err(CutLocus { distance: angle.abs() }) } else { Ok(angle) }
+        if sine.abs() < UNDECIDED && cosine < 0.0 {
+            Err(LogError::CutLocus { distance: angle.abs() })
+        } else {
+            Ok(angle)
+        }
     }
     fn inner(&self, _: &Self::Point, u: f64, v: f64) -> f64 {
         u * v

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::group::{LieGroup, So3Group, logarithm};
-use crate::manifold::{CutLocus, Manifold};
+use crate::manifold::{LogError, Manifold};
 
 /// SO(3) with its bi-invariant metric: the distance of two rotations is the angle between them, in rad.
 ///
@@ -20,13 +20,13 @@ impl Manifold for So3 {
     fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
         p * So3Group::exp(v)
     }
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
         let (cosine, vector) = relative_quaternion(p, q);
         // Rounding of the dot product leaves 4 ε in it: within that the side of half a turn is undecided.
         if cosine < 4.0 * f64::EPSILON {
-            return Err(CutLocus { distance: PI });
+            return Err(LogError::CutLocus { distance: PI });
         }
-        logarithm(cosine, vector).map(|log| log.rotation_vector).map_err(|_| CutLocus { distance: f64::NAN })
+        logarithm(cosine, vector).map(|log| log.rotation_vector).map_err(|_| LogError::NotAPoint)
     }
     fn inner(&self, _: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
         u.dot(&v)

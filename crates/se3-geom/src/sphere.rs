@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
-use crate::manifold::{CutLocus, Manifold};
+use crate::manifold::{LogError, Manifold};
 
 /// The unit sphere S² ⊂ ℝ³ with the metric of the surrounding space (thesis §4.3); distances are angles in rad.
 ///
@@ -40,12 +40,12 @@ impl Manifold for Sphere {
         (p * angle.cos() + v * sine_ratio(angle)).normalize()
     }
     /// Along (p × q) × p, which is as accurate next to the antipode as anywhere: see `oriented_sine`.
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
         let distance = self.distance(p, q);
         let axis = oriented_sine(p, q);
         let sine = length(&axis);
         if sine < UNDECIDED && p.dot(q) < 0.0 {
-            return Err(CutLocus { distance });
+            return Err(LogError::CutLocus { distance });
         }
         Ok(if sine > 0.0 { axis.cross(p) * (distance / sine) } else { axis })
     }

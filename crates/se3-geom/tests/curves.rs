@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use se3_geom::nalgebra::{DMatrix, DVector, UnitQuaternion, Vector1, Vector2, Vector3};
 use se3_geom::{
-    Bezier, ByArcLength, CubicEnds, CubicSpline, Curve, CutLocus, Derivatives, Ends, Euclidean, Geodesic, JetSpace,
-    LieGroup, Manifold, Parameterisation, PartialGeodesic, Pose, PoseSpline, R2, Screw, Se3, Se3Group, So3, So3Group,
+    Bezier, ByArcLength, CubicEnds, CubicSpline, Curve, Derivatives, Ends, Euclidean, Geodesic, JetSpace, LieGroup,
+    LogError, Manifold, Parameterisation, PartialGeodesic, Pose, PoseSpline, R2, Screw, Se3, Se3Group, So3, So3Group,
     Sphere, Twist, arc_length,
 };
 
@@ -157,7 +157,7 @@ fn geodesics_are_straight() {
     check(&Se3::with_weights(0.3, 2.0).unwrap(), sample_poses()[1], sample_poses()[4]);
     check(&Euclidean::<1>, Vector1::new(-2.0), Vector1::new(3.0));
     let half_turn = Geodesic::between(So3, UnitQuaternion::identity(), So3Group::exp(Vector3::new(PI, 0.0, 0.0)));
-    assert!(matches!(half_turn, Err(CutLocus { .. })));
+    assert!(matches!(half_turn, Err(LogError::CutLocus { .. })));
 }
 
 /// The screw keeps its axis and pitch: every point of the tool runs on a helix about one axis.

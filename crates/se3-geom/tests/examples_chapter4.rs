@@ -9,7 +9,7 @@ mod surfaces;
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
 use nalgebra::{Matrix2, SMatrix, Vector1, Vector2, Vector3, Vector4};
-use se3_geom::{Constraint, GeodesicError, HeightJet, LevelSet, Manifold, MongePatch, Sphere, UnitSegments, nalgebra};
+use se3_geom::{Constraint, HeightJet, LevelSet, LogError, Manifold, MongePatch, Sphere, UnitSegments, nalgebra};
 use surfaces::{egg_box, saddle};
 
 /// A hill, z = 2·exp(−x² − y²), around which geodesics pass on either side. Its greatest curvature is 4, at the top.
@@ -73,8 +73,8 @@ fn geodesics_of_monge_patches_are_those_of_scipy() {
             // Straight across: both ways round the hill are equally long.
             _ => {
                 let (p, q) = (Vector2::from(solved.from), Vector2::from(solved.to));
-                let refused = hill().try_log(&p, &q).unwrap_err();
-                let GeodesicError::NotUnique { length } = refused else { panic!("{refused}") };
+                let refused = hill().log(&p, &q).unwrap_err();
+                let LogError::CutLocus { distance: length } = refused else { panic!("{refused}") };
                 assert!((length - solved.length).abs() < 1e-11, "{length}");
                 assert_eq!(hill().distance(&p, &q), length);
             }
@@ -131,7 +131,7 @@ fn a_spherical_cap_is_the_sphere() {
     assert!((cap.embed_tangent(&q, cap.transport(&p, along, w)) - carried).norm() < 1e-12);
     // Over the rim there is no surface: a point that is none, not a wrong one.
     assert!(!cap.is_finite(&cap.exp(&p, along * 5.0)));
-    assert!(matches!(cap.try_log(&p, &Vector2::new(1.2, 0.0)), Err(GeodesicError::NotFound { .. })));
+    assert!(matches!(cap.log(&p, &Vector2::new(1.2, 0.0)), Err(LogError::NotFound { .. })));
     assert!(cap.distance(&p, &Vector2::new(1.2, 0.0)).is_nan());
 }
 
@@ -176,8 +176,8 @@ fn distances_of_unit_segments_are_those_of_their_motions() {
         let distance = segments.distance(&p, &segment(x, y, angle));
         assert!((distance - exact).abs() < 1e-11 * (1.0 + exact), "{distance} {exact}");
     }
-    let refused = segments.try_log(&p, &segment(0.3, -0.2, 0.5 + PI)).unwrap_err();
-    let GeodesicError::NotUnique { length } = refused else { panic!("{refused}") };
+    let refused = segments.log(&p, &segment(0.3, -0.2, 0.5 + PI)).unwrap_err();
+    let LogError::CutLocus { distance: length } = refused else { panic!("{refused}") };
     assert!((length - PI * FRAC_1_SQRT_2).abs() < 1e-10);
 }
 

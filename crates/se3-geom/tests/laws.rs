@@ -17,7 +17,7 @@ use samples::{
     rotation_vector, signed_angle, similarity, similarity_twist, twist,
 };
 use se3_geom::{
-    CutLocus, LevelSet, LieGroup, Manifold, Pose, R3, Se2, Se3, Se3Group, Sim2, So2, So3, So3Group, Sphere, nalgebra,
+    LevelSet, LieGroup, LogError, Manifold, Pose, R3, Se2, Se3, Se3Group, Sim2, So2, So3, So3Group, Sphere, nalgebra,
 };
 use surfaces::{egg_box, saddle};
 
@@ -255,7 +255,7 @@ impl Manifold for Twisted {
     fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
         So3.exp(p, v)
     }
-    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, CutLocus> {
+    fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
         So3.log(p, q)
     }
     fn inner(&self, p: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
@@ -303,21 +303,32 @@ fn the_similarity_metric_is_invariant_under_rigid_motions_only() {
 
 #[test]
 fn half_turns_have_no_logarithm() {
+    let pi = std::f64::consts::PI;
+    let distance = |refused: LogError| match refused {
+        LogError::CutLocus { distance } => distance,
+        other => panic!("{other}"),
+    };
     let half_turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(0.0, 0.0, 1.0, 0.0));
-    let refused = So3.log(&UnitQuaternion::identity(), &half_turn).unwrap_err();
-    assert_eq!(refused.distance, std::f64::consts::PI);
-    assert!((So3.distance(&UnitQuaternion::identity(), &half_turn) - std::f64::consts::PI).abs() < 1e-15);
+    assert_eq!(distance(So3.log(&UnitQuaternion::identity(), &half_turn).unwrap_err()), pi);
+    assert!((So3.distance(&UnitQuaternion::identity(), &half_turn) - pi).abs() < 1e-15);
     let pose = Pose::from_parts(Vector3::new(3.0, 0.0, 0.0).into(), half_turn);
-    let metric = Se3::default();
-    let refused = metric.log(&Pose::identity(), &pose).unwrap_err();
-    assert!((refused.distance - (std::f64::consts::PI.powi(2) + 9.0).sqrt()).abs() < 1e-14);
+    let refused = Se3::default().log(&Pose::identity(), &pose).unwrap_err();
+    assert!((distance(refused) - (pi.powi(2) + 9.0).sqrt()).abs() < 1e-14);
 
-    let half_turn = UnitComplex::new(std::f64::consts::PI);
-    assert_eq!(So2.log(&UnitComplex::identity(), &half_turn).unwrap_err().distance, std::f64::consts::PI);
+    let half_turn = UnitComplex::new(pi);
+    assert_eq!(distance(So2.log(&UnitComplex::identity(), &half_turn).unwrap_err()), pi);
     let pose = Isometry2::from_parts(nalgebra::Translation2::new(3.0, 0.0), half_turn);
     let refused = Se2::default().log(&Isometry2::identity(), &pose).unwrap_err();
-    assert!((refused.distance - (std::f64::consts::PI.powi(2) + 9.0).sqrt()).abs() < 1e-14);
+    assert!((distance(refused) - (pi.powi(2) + 9.0).sqrt()).abs() < 1e-14);
     let scaled = Similarity2::from_isometry(pose, 1.0);
     assert_eq!(Sim2::default().log(&Similarity2::identity(), &scaled).unwrap_err(), refused);
-    assert_eq!(Sphere.log(&Vector3::x(), &-Vector3::x()).unwrap_err().distance, std::f64::consts::PI);
+    assert_eq!(distance(Sphere.log(&Vector3::x(), &-Vector3::x()).unwrap_err()), pi);
+}
+
+#[test]
+fn numbers_that_are_no_rotation_have_no_logarithm() {
+    let nan = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(f64::NAN, 0.0, 0.0, 0.0));
+    assert_eq!(So3.log(&UnitQuaternion::identity(), &nan), Err(LogError::NotAPoint));
+    let pose = Pose::from_parts(Vector3::zeros().into(), nan);
+    assert_eq!(Se3::default().log(&Pose::identity(), &pose), Err(LogError::NotAPoint));
 }

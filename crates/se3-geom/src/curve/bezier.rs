@@ -1,7 +1,7 @@
 //! De Casteljau's construction with straight lines of any space.
 
 use super::{Curve, Derivatives, Jet, JetSpace};
-use crate::manifold::CutLocus;
+use crate::manifold::LogError;
 
 /// The cubic Bézier curve with control points Q₁ … Q₄ on t ∈ \[0, 1\]: de Casteljau's repeated linear interpolation, with the
 /// space's straight lines for line segments (thesis §6.2.3). It passes Q₁ and Q₄.
@@ -18,7 +18,7 @@ use crate::manifold::CutLocus;
 /// let t: f64 = 0.3;
 /// let x = -t.powi(3) + t.powi(2) + t;
 /// assert!((curve.point(t) - Vector3::new(x, x, t)).norm() < 1e-15);
-/// # Ok::<(), se3_geom::CutLocus>(())
+/// # Ok::<(), se3_geom::LogError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Bezier<S: JetSpace> {
@@ -30,14 +30,13 @@ impl<S: JetSpace> Bezier<S> {
     /// The curve with these control points.
     ///
     /// # Errors
-    /// [`CutLocus`] (of unstated distance) where two successive control points are not joined by one straight line, or are not
-    /// finite. Where they are, so are all the points of the construction: no two of them are farther apart in angle.
-    pub fn new(space: S, control_points: [S::Point; 4]) -> Result<Self, CutLocus> {
-        if control_points.windows(2).all(|pair| space.joins(&pair[0], &pair[1])) {
-            Ok(Self { space, control_points })
-        } else {
-            Err(CutLocus { distance: f64::NAN })
+    /// [`LogError`] where two successive control points are not joined by one straight line, or are not finite. Where they are,
+    /// so are all the points of the construction: no two of them are farther apart in angle.
+    pub fn new(space: S, control_points: [S::Point; 4]) -> Result<Self, LogError> {
+        for pair in control_points.windows(2) {
+            space.joins(&pair[0], &pair[1])?;
         }
+        Ok(Self { space, control_points })
     }
 
     /// The curve between two points with given velocities there, per unit of t: Q₂ lies a third of the first velocity after Q₁,
@@ -49,12 +48,9 @@ impl<S: JetSpace> Bezier<S> {
         space: S,
         [start, end]: [S::Point; 2],
         [leaving, arriving]: [S::Tangent; 2],
-    ) -> Result<Self, CutLocus> {
-        let (leaving, arriving) = (leaving * (1.0 / 3.0), arriving * (-1.0 / 3.0));
-        if !(space.is_shortest(leaving) && space.is_shortest(arriving)) {
-            return Err(CutLocus { distance: f64::NAN });
-        }
-        let (second, third) = (space.straight(&start, leaving), space.straight(&end, arriving));
+    ) -> Result<Self, LogError> {
+        let second = space.straight(&start, leaving * (1.0 / 3.0))?;
+        let third = space.straight(&end, arriving * (-1.0 / 3.0))?;
         Self::new(space, [start, second, third, end])
     }
 

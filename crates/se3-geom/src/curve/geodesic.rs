@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{Curve, Derivatives};
 use crate::group::{LieGroup, Se3Group};
-use crate::manifold::{CutLocus, Manifold};
+use crate::manifold::{LogError, Manifold};
 use crate::pose::Pose;
 use crate::twist::Twist;
 
@@ -29,8 +29,8 @@ impl<M: Manifold> Geodesic<M> {
     /// The shortest geodesic from `start` to `end`.
     ///
     /// # Errors
-    /// [`CutLocus`] where it is not unique.
-    pub fn between(manifold: M, start: M::Point, end: M::Point) -> Result<Self, CutLocus> {
+    /// As [`Manifold::log`].
+    pub fn between(manifold: M, start: M::Point, end: M::Point) -> Result<Self, LogError> {
         let velocity = manifold.log(&start, &end)?;
         Ok(Self { manifold, start, velocity })
     }
@@ -78,11 +78,11 @@ impl Screw {
     /// The screw motion from `start` to `end` that turns by less than half a turn.
     ///
     /// # Errors
-    /// [`CutLocus`] at half a turn, where two turn equally far.
-    pub fn between(start: Pose, end: Pose) -> Result<Self, CutLocus> {
+    /// [`LogError::CutLocus`] at half a turn, where two turn equally far.
+    pub fn between(start: Pose, end: Pose) -> Result<Self, LogError> {
         // The group's logarithm takes a side at half a turn; the product metric's tells.
         crate::Se3::default().log(&start, &end)?;
-        let twist = Se3Group::log(&(start.inverse() * end)).map_err(|_| CutLocus { distance: f64::NAN })?;
+        let twist = Se3Group::log(&(start.inverse() * end)).map_err(|_| LogError::NotAPoint)?;
         Ok(Self { start, twist })
     }
 

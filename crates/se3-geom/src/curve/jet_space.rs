@@ -8,7 +8,7 @@ use super::jet_rotation::{B, C, JetRotation, JetVector};
 use super::{Derivatives, Jet};
 use crate::euclidean::Euclidean;
 use crate::group::{LieGroup, Se3Group, So3Group};
-use crate::manifold::Manifold;
+use crate::manifold::{LogError, Manifold};
 use crate::pose::Pose;
 use crate::se3::Se3;
 use crate::so3::So3;
@@ -26,11 +26,15 @@ pub trait JetSpace {
     type PointJet: Clone;
 
     /// The point reached after unit time on the straight line that leaves `p` with velocity `v`.
-    fn straight(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point;
-    /// Whether the straight line along `v` is the only shortest one between its ends, so that they tell what v was.
-    fn is_shortest(&self, v: Self::Tangent) -> bool;
-    /// Whether the straight line from `p` to `q` is unique, and both are finite.
-    fn joins(&self, p: &Self::Point, q: &Self::Point) -> bool;
+    ///
+    /// # Errors
+    /// [`LogError::CutLocus`] where that line is not the only shortest one between its ends, which then do not tell what v was.
+    fn straight(&self, p: &Self::Point, v: Self::Tangent) -> Result<Self::Point, LogError>;
+    /// Checks that one straight line joins `p` and `q`.
+    ///
+    /// # Errors
+    /// [`LogError::CutLocus`] where there are several, [`LogError::NotAPoint`] where a coordinate is not finite.
+    fn joins(&self, p: &Self::Point, q: &Self::Point) -> Result<(), LogError>;
     /// A point at rest.
     fn at_rest(&self, p: &Self::Point) -> Self::PointJet;
     /// The point at fraction `t` of the straight line from `p` to `q`, everything moving.
@@ -66,14 +70,11 @@ impl<const N: usize> JetSpace for Euclidean<N> {
     type Tangent = SVector<f64, N>;
     type PointJet = [Jet; N];
 
-    fn straight(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
-        p + v
+    fn straight(&self, p: &Self::Point, v: Self::Tangent) -> Result<Self::Point, LogError> {
+        Ok(p + v)
     }
-    fn is_shortest(&self, _: Self::Tangent) -> bool {
-        true
-    }
-    fn joins(&self, p: &Self::Point, q: &Self::Point) -> bool {
-        self.is_finite(p) && self.is_finite(q)
+    fn joins(&self, p: &Self::Point, q: &Self::Point) -> Result<(), LogError> {
+        have_logarithm(self, p, q)
     }
     fn at_rest(&self, p: &Self::Point) -> Self::PointJet {
         std::array::from_fn(|k| Jet::constant(p[k]))
@@ -88,6 +89,18 @@ impl<const N: usize> JetSpace for Euclidean<N> {
     }
 }
 
+fn have_logarithm<M: Manifold>(manifold: &M, p: &M::Point, q: &M::Point) -> Result<(), LogError> {
+    if !(manifold.is_finite(p) && manifold.is_finite(q)) {
+        return Err(LogError::NotAPoint);
+    }
+    manifold.log(p, q).map(|_| ())
+}
+
+fn below_half_a_turn(turn: Vector3<f64>) -> Result<Vector3<f64>, LogError> {
+    let angle = turn.norm();
+    if angle >= PI { Err(LogError::CutLocus { distance: angle }) } else { Ok(turn) }
+}
+
 fn slerp(p: &JetRotation, q: &JetRotation, t: Jet) -> JetRotation {
     p.then(&JetRotation::exp(&(p.inverse().then(q).log() * t)))
 }
@@ -97,14 +110,11 @@ impl JetSpace for So3 {
     type Tangent = Vector3<f64>;
     type PointJet = PoseJet;
 
-    fn straight(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point {
-        p * So3Group::exp(v)
+    fn straight(&self, p: &Self::Point, v: Self::Tangent) -> Result<Self::Point, LogError> {
+        Ok(p * So3Group::exp(below_half_a_turn(v)?))
     }
-    fn is_shortest(&self, v: Self::Tangent) -> bool {
-        v.norm() < PI
-    }
-    fn joins(&self, p: &Self::Point, q: &Self::Point) -> bool {
-        self.is_finite(p) && self.is_finite(q) && self.log(p, q).is_ok()
+    fn joins(&self, p: &Self::Point, q: &Self::Point) -> Result<(), LogError> {
+        have_logarithm(self, p, q)
     }
     fn at_rest(&self, p: &Self::Point) -> PoseJet {
         PoseJet::constant(&Pose::from_parts(Vector3::zeros().into(), *p))
@@ -128,14 +138,12 @@ impl JetSpace for Se3 {
     type Tangent = Twist;
     type PointJet = PoseJet;
 
-    fn straight(&self, p: &Pose, v: Twist) -> Pose {
-        self.exp(p, v)
+    fn straight(&self, p: &Pose, v: Twist) -> Result<Pose, LogError> {
+        below_half_a_turn(v.angular)?;
+        Ok(self.exp(p, v))
     }
-    fn is_shortest(&self, v: Twist) -> bool {
-        v.angular.norm() < PI
-    }
-    fn joins(&self, p: &Pose, q: &Pose) -> bool {
-        self.is_finite(p) && self.is_finite(q) && self.log(p, q).is_ok()
+    fn joins(&self, p: &Pose, q: &Pose) -> Result<(), LogError> {
+        have_logarithm(self, p, q)
     }
     fn at_rest(&self, p: &Pose) -> PoseJet {
         PoseJet::constant(p)
@@ -165,13 +173,11 @@ impl JetSpace for Se3Group {
     type Tangent = Twist;
     type PointJet = PoseJet;
 
-    fn straight(&self, p: &Pose, v: Twist) -> Pose {
-        p * Self::exp(v)
+    fn straight(&self, p: &Pose, v: Twist) -> Result<Pose, LogError> {
+        below_half_a_turn(v.angular)?;
+        Ok(p * Self::exp(v))
     }
-    fn is_shortest(&self, v: Twist) -> bool {
-        v.angular.norm() < PI
-    }
-    fn joins(&self, p: &Pose, q: &Pose) -> bool {
+    fn joins(&self, p: &Pose, q: &Pose) -> Result<(), LogError> {
         Se3::default().joins(p, q)
     }
     fn at_rest(&self, p: &Pose) -> PoseJet {
