@@ -4,7 +4,23 @@ use nalgebra::SVector;
 
 use crate::manifold::{LogError, Manifold};
 
-/// ℝᴺ with the ordinary distance; points and tangents are vectors.
+/// ℝᴺ with the ordinary distance: the flat space that the others are compared with (thesis §4.1).
+///
+/// | | |
+/// | --- | --- |
+/// | points, tangents | vectors, in the unit of the data |
+/// | metric | ⟨u, v⟩ = uᵀv |
+/// | exp, log | exp(p, v) = p + v, log(p, q) = q − p, everywhere |
+/// | distance | ‖q − p‖, in the unit of the data |
+/// | transport | v itself |
+/// | injectivity radius | infinite: `log` never fails |
+///
+/// ```
+/// use se3_geom::{Manifold, R3, nalgebra::Vector3};
+/// let (p, q) = (Vector3::new(1.0, 0.0, 0.0), Vector3::new(1.0, 3.0, 4.0));
+/// assert_eq!(R3::default().distance(&p, &q), 5.0);
+/// assert_eq!(R3::default().geodesic(&p, &q, 0.5), Ok(Vector3::new(1.0, 1.5, 2.0)));
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Euclidean<const N: usize>;
 

@@ -18,11 +18,21 @@ pub trait Constraint<const N: usize, const K: usize> {
 
 /// The level set F⁻¹(0) ⊂ ℝᴺ with the metric of the surrounding space (thesis §4.4).
 ///
-/// Points are vectors x with F(x) = 0, tangents vectors v with DF·v = 0; [`project`](Self::project) and
-/// [`project_tangent`](Self::project_tangent) make them. Geodesics have no acceleration along the set:
-/// ẍ = −Dᵀ(DDᵀ)⁻¹·D²F(ẋ, ẋ) with D = DF(x). They are integrated to a relative error of 1e-13 a step, and each step is
-/// projected back onto the set. `log` shoots, as on [`MongePatch`](crate::MongePatch): beyond the injectivity radius it is the
-/// shortest geodesic found, not a proven minimum.
+/// With D = DF(x):
+///
+/// | | |
+/// | --- | --- |
+/// | points | vectors x with F(x) = 0; [`project`](Self::project) makes them |
+/// | tangents at x | vectors v with D·v = 0; [`project_tangent`](Self::project_tangent) makes them |
+/// | metric | ⟨u, v⟩ = uᵀv |
+/// | exp | ẍ = −Dᵀ(DDᵀ)⁻¹·D²F(ẋ, ẋ): no acceleration along the set (thesis §4.4) |
+/// | log | its boundary-value problem, solved by shooting |
+/// | distance | length of the logarithm; NaN where none was found |
+/// | transport | ẇ = −Dᵀ(DDᵀ)⁻¹·D²F(ẋ, w) |
+/// | injectivity radius | the lower bound that the caller states |
+///
+/// Geodesics are integrated to a relative error of 1e-13 a step, and each step is projected back onto the set. `log` works as on
+/// [`MongePatch`](crate::MongePatch): beyond the injectivity radius it is the shortest geodesic found, not a proven minimum.
 ///
 /// ```
 /// use se3_geom::{LevelSet, Manifold, nalgebra::Vector4};

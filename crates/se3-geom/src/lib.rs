@@ -1,7 +1,29 @@
 //! Manifolds as values, Lie groups, geodesics and C² splines for robot motion.
 //!
-//! A [`Manifold`] is a value that owns its metric; points and tangents are plain [`nalgebra`] data. Two structures live on
-//! SE(3) and are kept apart by type:
+//! A [`Manifold`] is a value that owns its metric; points and tangents are plain [`nalgebra`] data. Each page below states the
+//! space's points, tangents, metric, exponential, logarithm, transport, injectivity radius, units, errors and source; "thesis" is
+//! P. Shah, *On Curve Reconstruction in Riemannian Manifolds: Ordering Motion Frames*.
+//!
+//! | space | as a manifold | as a group |
+//! | --- | --- | --- |
+//! | ℝᴺ | [`Euclidean`] | |
+//! | directions S² | [`Sphere`] | |
+//! | rotations | [`So2`], [`So3`] | [`So2Group`], [`So3Group`] |
+//! | rigid motions | [`Se2`], [`Se3`] | [`Se2Group`], [`Se3Group`] |
+//! | similarities of the plane | [`Sim2`] | [`Sim2Group`] |
+//! | surfaces z = h(x, y) | [`MongePatch`] | |
+//! | implicit sets F(x) = 0 | [`LevelSet`] | |
+//!
+//! | curve | what it is |
+//! | --- | --- |
+//! | [`Geodesic`], [`Screw`] | the straight line of a manifold, and of the group SE(3) |
+//! | [`PartialGeodesic`] | slerp of rotations, C² cubic spline of positions (thesis eqs. 6.9, 6.10) |
+//! | [`Bezier`] | de Casteljau with given end velocities (eq. 6.15) |
+//! | [`PoseSpline`] | C² through every pose: the one to want for execution |
+//! | [`CubicSpline`] | C² through vectors |
+//! | [`ByArcLength`] | any of them at constant speed |
+//!
+//! Two structures live on SE(3) and are kept apart by type:
 //!
 //! | type | structure | straight line between two poses | use it for |
 //! | --- | --- | --- | --- |

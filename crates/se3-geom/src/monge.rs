@@ -19,11 +19,18 @@ pub struct HeightJet {
 
 /// The Monge patch z = h(x, y) over the whole plane, with the metric of the surrounding space (thesis §4.2).
 ///
-/// Points are (x, y), tangents (ẋ, ẏ), in the coordinates of the plane. With ∇h and H the gradient and Hessian of h:
+/// With ∇h and H the gradient and Hessian of h:
 ///
-/// - metric g = I + ∇h∇hᵀ (eq. 4.2: E = 1 + h_x², F = h_x·h_y, G = 1 + h_y²);
-/// - Christoffel symbols Γᵏᵢⱼ = h_k·h_ij/(1 + ‖∇h‖²);
-/// - geodesics ẍ = −∇h·(ẋᵀHẋ)/(1 + ‖∇h‖²) (eq. 3.9; eqs. 4.5–4.6 for h = xy).
+/// | | |
+/// | --- | --- |
+/// | points, tangents | (x, y) and (ẋ, ẏ), in the coordinates of the plane and the unit of the height |
+/// | metric | g = I + ∇h∇hᵀ (eq. 4.2: E = 1 + h_x², F = h_x·h_y, G = 1 + h_y²) |
+/// | Christoffel symbols | Γᵏᵢⱼ = h_k·h_ij/(1 + ‖∇h‖²) |
+/// | exp | the geodesic ẍ = −∇h·(ẋᵀHẋ)/(1 + ‖∇h‖²) (eq. 3.9; eqs. 4.5–4.6 for h = xy), integrated |
+/// | log | its boundary-value problem, solved by shooting (Examples 4.2 and 4.3) |
+/// | distance | length of the logarithm; NaN where none was found |
+/// | transport | ẇ = −∇h·(ẋᵀHw)/(1 + ‖∇h‖²) (eq. 3.8), integrated |
+/// | injectivity radius | the lower bound that the caller states |
 ///
 /// `exp` and `transport` integrate these equations to a relative error of 1e-13 a step. `log` shoots: Newton's method on the end
 /// point, first from the straight line of the plane. A geodesic shorter than the injectivity radius is the shortest. Where none was

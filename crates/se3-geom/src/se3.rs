@@ -6,11 +6,33 @@ use crate::pose::Pose;
 use crate::so3::So3;
 use crate::twist::Twist;
 
-/// SE(3) with the left-invariant product metric d² = α‖log(R₁ᵀR₂)‖² + β‖p₂ − p₁‖² (thesis eq. 4.17, with the square that
-/// (7.4) lacks).
+/// SE(3) with the left-invariant product metric: poses, the distance of which weighs turning against moving.
 ///
-/// Tangents at a pose are body twists: `linear` = Rᵀṗ, `angular` = ω with Ṙ = R\[ω\]. Geodesics are slerp plus a straight line,
-/// and are the same for every α and β; distances, and so orders, are not.
+/// | | |
+/// | --- | --- |
+/// | points | poses (R, p), `world_from_tool`; p in m |
+/// | tangents | body twists: `linear` = Rᵀṗ in m, `angular` = ω in rad with Ṙ = R\[ω\] (eq. 4.14) |
+/// | metric | ⟨(v, ω), (v′, ω′)⟩ = α·ωᵀω′ + β·vᵀv′, α in rad⁻², β in m⁻² |
+/// | exp | (R·Exp(ω), p + R·v): slerp and a straight line of the tool's origin (eqs. 4.15, 4.16) |
+/// | log | ω = log(R₁ᵀR₂), v = R₁ᵀ(p₂ − p₁) |
+/// | distance | d² = α‖log(R₁ᵀR₂)‖² + β‖p₂ − p₁‖² (eq. 4.17, with the square that 7.4 lacks), on the cut locus too |
+/// | transport | angular as on [`So3`]; linear Exp(−ω)·v, that is, fixed in the world |
+/// | injectivity radius | π√α; at half a turn `log` is [`LogError::CutLocus`](crate::LogError::CutLocus) |
+///
+/// Geodesics are the same for every α and β; distances, and so orders, are not: only L = √(α/β) matters, the metres that count as
+/// much as one radian. The metric is the same seen from every world frame (left-invariant), but not for every tool frame: moving
+/// the tool's origin changes it. For rigid motions about a screw axis see [`Se3Group`](crate::Se3Group), whose exponential is
+/// another curve and whose norm is no distance.
+///
+/// ```
+/// use se3_geom::{Manifold, Pose, Se3, nalgebra::{UnitQuaternion, Vector3}};
+/// let metric = Se3::with_metres_per_radian(0.5).unwrap();
+/// let turned = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.8);
+/// let pose = Pose::from_parts(Vector3::new(0.3, 0.0, 0.0).into(), turned);
+/// assert!((metric.distance(&Pose::identity(), &pose) - 0.5).abs() < 1e-15); // (0.5 · 0.8)² + 0.3² = 0.5²
+/// let world = Pose::from_parts(Vector3::new(4.0, 5.0, 6.0).into(), turned);
+/// assert!((metric.distance(&world, &(world * pose)) - 0.5).abs() < 1e-14); // the same in another world frame
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Se3 {
     alpha: f64,

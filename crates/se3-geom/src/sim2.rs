@@ -6,13 +6,21 @@ use crate::manifold::{LogError, Manifold};
 use crate::planar_twist::SimilarityTwist;
 use crate::so2::So2;
 
-/// The similarities x ↦ e^λ·R(θ)·x + d of the plane as the product of scales, rotations and translations,
-/// d² = α((λ₂ − λ₁)² + angle²) + β‖d₂ − d₁‖² (thesis §4.6, eq. 4.21 with the square that its last term lacks).
+/// The similarities x ↦ e^λ·R(θ)·x + d of the plane, as the product of scales, rotations and translations.
+///
+/// | | |
+/// | --- | --- |
+/// | points | similarities: scale e^λ > 0, rotation R(θ), translation d in m (thesis eq. 4.18, with R ∈ SO(2), d ∈ ℝ²) |
+/// | tangents | `scaling` = λ̇, `angular` = θ̇ in rad, `linear` = Rᵀḋ in m: turned into the body, not scaled |
+/// | metric | α·(λ̇λ̇′ + θ̇θ̇′) + β·vᵀv′, β in m⁻² |
+/// | exp, log | even scaling and turning while the origin moves on a straight line; θ the short way round |
+/// | distance | d² = α((λ₂ − λ₁)² + (θ₂ − θ₁)²) + β‖d₂ − d₁‖² (eq. 4.21, with the square that its last term lacks) |
+/// | transport | as on [`Se2`](crate::Se2); scales are a flat factor |
+/// | injectivity radius | π√α; at half a turn `log` is [`LogError::CutLocus`](crate::LogError::CutLocus) |
 ///
 /// The metric is invariant under rigid motions from the left, not under scalings, which stretch the translations (the thesis
-/// calls it left-invariant). Tangents: `scaling` = λ̇, `angular` = θ̇, and `linear` = Rᵀḋ, turned into the body but not scaled.
-/// Geodesics scale and turn evenly while the origin moves on a straight line; the logarithmic spirals of the group are
-/// [`Sim2Group`](crate::Sim2Group)'s.
+/// calls it left-invariant). The logarithmic spirals of the group are [`Sim2Group`](crate::Sim2Group)'s. Relative error of log
+/// ≤ 1e-14.
 ///
 /// ```
 /// use se3_geom::{Manifold, Sim2, nalgebra::{Similarity2, Vector2}};

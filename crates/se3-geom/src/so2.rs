@@ -8,8 +8,17 @@ use crate::manifold::{LogError, Manifold};
 
 /// SO(2) with its bi-invariant metric: the distance of two rotations is the angle between them, in rad.
 ///
-/// Tangents are angular rates ω, counter-clockwise positive; geodesics are p·e^{itω}. The space is flat: transport changes
-/// nothing.
+/// | | |
+/// | --- | --- |
+/// | points | unit complex numbers e^{iθ} |
+/// | tangents | angular rates ω in rad, counter-clockwise positive |
+/// | metric | ⟨ω, υ⟩ = ω·υ |
+/// | exp, log | exp(p, ω) = p·e^{iω}; log(p, q) = arg(p̄q) ∈ (−π, π) |
+/// | distance | the angle \|arg(p̄q)\| ∈ \[0, π\], on the cut locus too |
+/// | transport | ω itself: the circle is flat |
+/// | injectivity radius | π; at half a turn `log` is [`LogError::CutLocus`] and names the angle |
+///
+/// Relative error of log ≤ 1e-14 at every angle, 1e-300 rad included. Source: thesis eq. D.5 in the plane.
 ///
 /// ```
 /// use se3_geom::{Manifold, So2, nalgebra::UnitComplex};
