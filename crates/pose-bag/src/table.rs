@@ -21,7 +21,16 @@ pub(crate) const STANDARD_INPUT: &str = "-";
 pub struct Table {
     file: String,
     columns: Vec<String>,
-    rows: Vec<(usize, String)>,
+    /// The rows' text, one after the other: a million rows are one allocation.
+    text: String,
+    rows: Vec<Row>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    line: usize,
+    /// Where its text ends; it begins where that of the row before ends.
+    end: usize,
 }
 
 /// Reads a CSV file, or standard input where the path is `-`.
@@ -47,7 +56,7 @@ impl Table {
     /// As [`read_table`].
     pub fn from_reader(reader: impl BufRead, file: &str) -> Result<Self, BagError> {
         let mut columns: Option<Vec<String>> = None;
-        let mut rows = Vec::new();
+        let (mut rows, mut all) = (Vec::new(), String::new());
         for_each_line(reader, file, |line, text| match &columns {
             None => {
                 columns = Some(parse_header(file, line, text)?);
@@ -58,12 +67,13 @@ impl Table {
                 if found != expected {
                     return Err(BagError::FieldCount { file: file.into(), line, expected, found });
                 }
-                rows.push((line, text.to_owned()));
+                all.push_str(text);
+                rows.push(Row { line, end: all.len() });
                 Ok(())
             }
         })?;
         match columns {
-            Some(columns) if !rows.is_empty() => Ok(Self { file: file.into(), columns, rows }),
+            Some(columns) if !rows.is_empty() => Ok(Self { file: file.into(), columns, text: all, rows }),
             _ => Err(BagError::Empty { file: file.into() }),
         }
     }
@@ -95,7 +105,7 @@ impl Table {
 
     /// Line of the file, from 1, on which each row stands.
     pub fn line_numbers(&self) -> impl Iterator<Item = usize> {
-        self.rows.iter().map(|(line, _)| *line)
+        self.rows.iter().map(|row| row.line)
     }
 
     /// The named columns, row by row, in the order of `names`; every number is finite.
@@ -103,12 +113,30 @@ impl Table {
     /// # Errors
     /// Where a column is missing or a field is not a finite number.
     pub fn select(&self, names: &[&str]) -> Result<Vec<Vec<f64>>, BagError> {
+        self.read_rows(names, <[f64]>::to_vec)
+    }
+
+    /// As [`Table::select`], for a number of columns known beforehand.
+    ///
+    /// # Errors
+    /// As [`Table::select`].
+    pub fn select_array<const N: usize>(&self, names: [&str; N]) -> Result<Vec<[f64; N]>, BagError> {
+        self.read_rows(&names, |row| std::array::from_fn(|i| row[i]))
+    }
+
+    fn read_rows<R>(&self, names: &[&str], make: impl Fn(&[f64]) -> R) -> Result<Vec<R>, BagError> {
         let indices = names.iter().map(|name| self.index_of(name)).collect::<Result<Vec<_>, _>>()?;
-        let select_row = |(line, text): &(usize, String)| {
-            let row: Vec<&str> = fields(text).collect();
-            indices.iter().zip(names).map(|(&i, name)| finite(row[i], &self.file, *line, name)).collect()
+        let (mut texts, mut numbers) = (Vec::with_capacity(self.columns.len()), vec![0.0; names.len()]);
+        let mut start = 0;
+        let read_row = |row: &Row| {
+            texts.clear();
+            texts.extend(fields(&self.text[std::mem::replace(&mut start, row.end)..row.end]));
+            for ((number, &index), name) in numbers.iter_mut().zip(&indices).zip(names) {
+                *number = finite(texts[index], &self.file, row.line, name)?;
+            }
+            Ok(make(&numbers))
         };
-        self.rows.iter().map(select_row).collect()
+        self.rows.iter().map(read_row).collect()
     }
 
     /// The poses in the columns [`POSE_COLUMNS`].
@@ -116,11 +144,11 @@ impl Table {
     /// # Errors
     /// As [`Table::select`], and where a quaternion is no rotation.
     pub fn poses(&self) -> Result<Vec<Pose>, BagError> {
-        let pose = |(values, (line, _)): (Vec<f64>, &(usize, String))| {
-            let invalid = |reason| BagError::InvalidPoseInLine { file: self.file.clone(), line: *line, reason };
+        let pose = |(values, row): ([f64; 7], &Row)| {
+            let invalid = |reason| BagError::InvalidPoseInLine { file: self.file.clone(), line: row.line, reason };
             pose_from_row(&values).map_err(invalid)
         };
-        self.select(&POSE_COLUMNS)?.into_iter().zip(&self.rows).map(pose).collect()
+        self.select_array(POSE_COLUMNS)?.into_iter().zip(&self.rows).map(pose).collect()
     }
 
     fn index_of(&self, name: &str) -> Result<usize, BagError> {
