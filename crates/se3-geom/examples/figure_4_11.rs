@@ -13,9 +13,9 @@ use se3_geom::nalgebra::{Isometry2, Vector2};
 use se3_geom::{CutLocus, LieGroup, Manifold, Se2, Se2Group};
 
 /// Pieces of the polygons.
-pub(crate) const PIECES: u32 = 400;
+pub(crate) const PIECES: u32 = 100;
 /// A frame drawn every so many pieces.
-const FRAME_EVERY: usize = 40;
+const FRAME_EVERY: usize = 10;
 
 /// What the figure shows, in the metric with one metre a radian.
 pub(crate) struct Numbers {

@@ -86,7 +86,7 @@ pub(crate) fn compute() -> Result<Numbers, Box<dyn Error>> {
 
 /// The three lines of origins, with frames along them.
 pub(crate) fn draw(numbers: &Numbers, path: &Path) -> Result<(), Box<dyn Error>> {
-    let view = View::from_angles(-1.2, 0.6);
+    let view = View::from_angles(-0.5, 0.35);
     let mut panel = Panel::new("Figure 6.1: geodesic and de Casteljau's curve in SE(3)");
     for (curve, colour, name) in [
         (&numbers.geodesic, BLACK, "geodesic"),

@@ -67,7 +67,8 @@ pub(crate) fn compute() -> Result<Numbers, Box<dyn Error>> {
     })
 }
 
-fn closed_spline() -> Result<CubicSpline<2>, SplineError> {
+/// The curve itself.
+pub(crate) fn closed_spline() -> Result<CubicSpline<2>, SplineError> {
     let knots: Vec<_> = (0..=POINTS.len()).map(|i| i as f64).collect();
     CubicSpline::through(&POINTS.map(Vector2::from), &knots, CubicEnds::Periodic)
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use drawing::{Panel, View, gallery_path, write};
 use plotters::style::{BLACK, RED, RGBColor};
-use se3_geom::nalgebra::Vector3;
+use se3_geom::nalgebra::{Vector2, Vector3};
 use se3_geom::{CutLocus, Manifold, Sphere};
 
 /// The latitude, counted from the pole.
@@ -66,21 +66,29 @@ pub(crate) fn compute() -> Result<Numbers, CutLocus> {
     Ok(Numbers { turns_rad, limit_rad: (4.0 * turns_rad[3] - turns_rad[2]) / 3.0, field })
 }
 
-/// The near half of the sphere's net, the latitude, and the vector on its way.
+/// The sphere's net as far as it faces the viewer.
+pub(crate) fn net(view: &View) -> Vec<Vec<Vector2<f64>>> {
+    let part = |i: i32| f64::from(i) / 60.0 * PI;
+    let latitudes = (1..12).map(|k| (0..=60).map(|i| point(part(5 * k), 2.0 * part(i))).collect::<Vec<_>>());
+    let meridians = (0..12).map(|k| (0..=60).map(|i| point(part(i), 2.0 * part(5 * k))).collect());
+    let lines = latitudes.chain(meridians).flat_map(|line| {
+        let runs = line.split(|p| !view.faces(p)).filter(|run| run.len() > 1);
+        runs.map(|run| run.iter().map(|p| view.project(p)).collect()).collect::<Vec<_>>()
+    });
+    lines.collect()
+}
+
+/// Where the viewer is.
+pub(crate) fn view() -> View {
+    View::from_angles(0.4, 0.7)
+}
+
+/// The net, the latitude, and the vector on its way.
 pub(crate) fn draw(numbers: &Numbers, path: &Path) -> Result<(), Box<dyn Error>> {
-    let view = View::from_angles(0.4, 0.7);
+    let view = view();
     let mut panel = Panel::new("Figure C.1: parallel transport round a latitude");
-    let grey = RGBColor(200, 200, 200);
-    for k in 0..12 {
-        let part = |i: i32| f64::from(i) / 60.0 * PI;
-        let (u, v) = (f64::from(k) * PI / 12.0, f64::from(k) * PI / 6.0);
-        let latitude: Vec<_> = (0..=60).map(|i| point(u, 2.0 * part(i))).collect();
-        let meridian: Vec<_> = (0..=60).map(|i| point(part(i), v)).collect();
-        for line in [latitude, meridian] {
-            for piece in line.windows(2).filter(|piece| piece.iter().all(|p| view.faces(p))) {
-                panel.line(piece.iter().map(|p| view.project(p)), grey, "");
-            }
-        }
+    for line in net(&view) {
+        panel.line(line, RGBColor(210, 210, 210), "");
     }
     panel.line(numbers.field.iter().map(|[p, _]| view.project(p)), BLACK, "latitude π/4");
     for [p, v] in numbers.field.iter().step_by(16) {

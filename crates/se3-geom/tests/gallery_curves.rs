@@ -30,30 +30,31 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, LN_2, PI, SQRT_2};
 use std::path::Path;
 
 use se3_geom::nalgebra::{Matrix2, Matrix3, Vector2, Vector3, Vector4};
-use se3_geom::{Bezier, LieGroup, Manifold, Se3, So3, So3Group};
+use se3_geom::{Bezier, Curve, LieGroup, Manifold, Se3, So3, So3Group};
 
 /// Draws into a directory of its own, and looks whether there are the lines and dots, of finite numbers and within the picture.
-fn assert_drawn(polylines: usize, dots: usize, draw: impl Fn(&Path) -> Result<(), Box<dyn Error>>) {
+/// `lines` counts those of the legend too.
+fn assert_drawn(lines: usize, dots: usize, draw: impl Fn(&Path) -> Result<(), Box<dyn Error>>) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("figure.svg");
     draw(&path).unwrap();
     let svg = std::fs::read_to_string(&path).unwrap();
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{svg}");
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
-    // The numbers of a quoted attribute, one list an occurrence.
-    let attribute = |text: &str, name: &str| -> Vec<Vec<f64>> {
-        let opening = format!(" {name}=\"");
-        let values = text.split(&opening).skip(1).map(|rest| rest.split('"').next().unwrap());
-        values.map(|v| v.split([',', ' ']).filter(|x| !x.is_empty()).map(|x| x.parse().unwrap()).collect()).collect()
-    };
-    let size = [attribute(&svg, "width")[0][0], attribute(&svg, "height")[0][0]];
-    // The mesh, the axes and the legend are polylines and lines of their own: one colour each, and not with opacity 1.
-    let lines = attribute(&svg, "points");
-    assert!(lines.len() >= polylines, "{} polylines of {polylines}", lines.len());
-    for line in lines {
-        assert!(line.chunks(2).all(|p| p.iter().zip(size).all(|(x, most)| (0.0..=most).contains(x))), "{line:?}");
-    }
     assert_eq!(svg.matches("<circle").count(), dots);
+    let attribute = |element: &str, name: &str| -> Vec<f64> {
+        let value = element.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap();
+        value.split([',', ' ']).filter(|x| !x.is_empty()).map(|x| x.parse().unwrap()).collect()
+    };
+    let size = [attribute(&svg, "width")[0], attribute(&svg, "height")[0]];
+    // The axes are thinner.
+    let drawn: Vec<_> = svg.lines().filter(|x| x.contains("<polyline") && x.contains("stroke-width=\"2\"")).collect();
+    assert_eq!(drawn.len(), lines);
+    for line in drawn {
+        let points = attribute(line, "points");
+        assert!(points.len() >= 4, "{line}");
+        assert!(points.chunks(2).all(|p| p.iter().zip(size).all(|(x, most)| (0.0..=most).contains(x))), "{line}");
+    }
 }
 
 /// Example 4.4: two translations and a turn about the middle, by their closed forms.
@@ -94,11 +95,11 @@ fn the_geodesic_of_figure_4_11_is_the_shorter() {
     let (angle, chord) = (2.0_f64, 5.0_f64);
     let distance = angle.hypot(chord);
     assert!((numbers.distance - distance).abs() < 1e-14);
-    // 400 terms of size 0.01 with their roundings of 1e-15, poses of size 5 being subtracted.
-    assert!((numbers.geodesic_length - distance).abs() < 400.0 * 2e-15);
+    // 100 terms, each of a difference of positions of size 5 with a rounding of 1e-15.
+    assert!((numbers.geodesic_length - distance).abs() < 100.0 * 2e-15);
     let arc = chord * (0.5 * angle) / (0.5 * angle).sin();
     let curve_length = angle.hypot(arc);
-    // A chord is shorter than its arc by δ²/24 of it, δ = angle/400; the length by (arc/length)² times that part.
+    // A chord is shorter than its arc by δ²/24 of it, δ = angle/100; the length by (arc/length)² times that part.
     let step = angle / f64::from(figure_4_11::PIECES);
     let missing = arc * arc / curve_length * step * step / 24.0;
     assert!((curve_length - numbers.curve_length - missing).abs() < 1e-3 * missing, "{}", numbers.curve_length);
@@ -115,10 +116,10 @@ fn the_geodesic_of_figure_4_11_is_the_shorter() {
         assert!((curve.rotation.angle() - turned).abs() < 1e-14 && (geodesic.rotation.angle() - turned).abs() < 1e-14);
     }
     for poses in [&numbers.curve, &numbers.geodesic] {
-        assert_eq!((poses[0], poses.len()), (numbers.ends[0], 401));
-        assert!((poses[400].to_homogeneous() - numbers.ends[1].to_homogeneous()).norm() < 1e-14);
+        assert_eq!((poses[0], poses.len()), (numbers.ends[0], 101));
+        assert!((poses[100].to_homogeneous() - numbers.ends[1].to_homogeneous()).norm() < 1e-14);
     }
-    assert_drawn(2 + 2 * 11 * 2, 2, |path| figure_4_11::draw(&numbers, path));
+    assert_drawn(2 + 2 + 2 * 11 * 2, 2, |path| figure_4_11::draw(&numbers, path));
 }
 
 /// Rodrigues' formula (D.1) as it is printed, for a vector that does not vanish.
@@ -153,7 +154,7 @@ fn the_geodesic_of_figure_4_13_is_that_of_equations_4_15_to_4_17() {
         assert!((pose.translation.vector - Vector3::new(6.0 * t - 6.0, 6.0 * t, 2.0 * t)).norm() < 1e-14);
     }
     assert!((numbers.poses[0].rotation.to_rotation_matrix().into_inner() - first).norm() < 1e-14);
-    assert_drawn(1 + 3 * 13, 2, |path| figure_4_13::draw(&numbers, path));
+    assert_drawn(1 + 1 + 3 * 13, 2, |path| figure_4_13::draw(&numbers, path));
 }
 
 /// The object of Figure 4.14 stays a circle, of radius 2ᵗ, and its centre runs on a logarithmic spiral about the fixed point.
@@ -184,7 +185,7 @@ fn the_circle_of_figure_4_14_stays_one() {
         }
         arm = step * arm;
     }
-    assert_drawn(1 + 2 * 9, 0, |path| figure_4_14::draw(&numbers, path));
+    assert_drawn(1 + 1 + 2 * 9, 0, |path| figure_4_14::draw(&numbers, path));
 }
 
 /// Figure 6.1: the curves leave and arrive as told. On the product metric the origin runs on the ordinary Bézier curve of the
@@ -242,7 +243,7 @@ fn the_curves_of_figure_6_1_keep_the_given_velocities() {
         let polygon: f64 = curve.poses.windows(2).map(|p| metric.distance(&p[0], &p[1])).sum();
         assert!(polygon < curve.length && polygon > 0.999 * curve.length, "{polygon} {}", curve.length);
     }
-    assert_drawn(3 + 3 * 11 * 3, 2, |path| figure_6_1::draw(&numbers, path));
+    assert_drawn(3 + 3 + 3 * 11 * 3, 2, |path| figure_6_1::draw(&numbers, path));
 }
 
 /// Figure 6.3: through the points, twice differentiable at each, the closing one too, and with the tangents of (6.10).
@@ -267,10 +268,13 @@ fn the_spline_of_figure_6_3_is_closed_and_c2() {
         assert!((numbers.curve[20 * i] - points[i]).norm() < 1e-14);
     }
     assert!((numbers.curve[20 * n] - points[0]).norm() < 1e-14);
+    let spline = figure_6_3::closed_spline().unwrap();
+    assert!(spline.is_closed());
+    assert!((spline.point(-1.0) - points[n - 1]).norm() < 1e-14, "it goes round");
     // The drawn polygon: shorter, by a part (turn of a piece)²/24 on average; the sharpest bend turns by 0.6 in one.
     let polygon: f64 = numbers.curve.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
     assert!(polygon < numbers.length && polygon > 0.998 * numbers.length, "{polygon} {}", numbers.length);
-    assert_drawn(1, n, |path| figure_6_3::draw(&numbers, path));
+    assert_drawn(1 + 1, n, |path| figure_6_3::draw(&numbers, path));
 }
 
 /// Figure C.1: after a round the vector has turned by the area enclosed; on the way it solves (C.1).
@@ -300,5 +304,6 @@ fn the_vector_of_figure_c_1_turns_by_the_area_enclosed() {
             (vector - exact).norm()
         );
     }
-    assert_drawn(17, 1, |path| figure_c_1::draw(&numbers, path));
+    let net = figure_c_1::net(&figure_c_1::view()).len();
+    assert_drawn(net + 1 + 1 + 17, 1, |path| figure_c_1::draw(&numbers, path));
 }

@@ -13,6 +13,8 @@ const SIDE: u32 = 560;
 /// Room for the numbers at the axes, and around the drawing, in pixels.
 const NUMBERS: u32 = 36;
 const MARGIN: u32 = 12;
+/// Of the lines, in pixels; the axes have 1.
+const WIDTH: u32 = 2;
 
 /// One panel: a title, polylines and dots, in the order in which they are drawn.
 pub(crate) struct Panel {
@@ -61,15 +63,20 @@ impl Panel {
             .build_cartesian_2d(x, y)?;
         chart.configure_mesh().light_line_style(TRANSPARENT).max_light_lines(1).draw()?;
         for (points, colour, label) in &self.lines {
-            let colour = *colour;
-            let drawn = chart.draw_series(LineSeries::new(points.iter().map(|p| (p.x, p.y)), &colour))?;
+            let colour = colour.stroke_width(WIDTH);
+            let drawn = chart.draw_series(LineSeries::new(points.iter().map(|p| (p.x, p.y)), colour))?;
             if !label.is_empty() {
                 drawn.label(label).legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour));
             }
         }
         chart.draw_series(self.dots.iter().map(|(p, colour)| Circle::new((p.x, p.y), 3, colour.filled())))?;
         if self.lines.iter().any(|(_, _, label)| !label.is_empty()) {
-            chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
+            chart
+                .configure_series_labels()
+                .position(SeriesLabelPosition::UpperLeft)
+                .background_style(WHITE.mix(0.8))
+                .border_style(BLACK)
+                .draw()?;
         }
         Ok(())
     }
