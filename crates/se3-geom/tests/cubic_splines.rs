@@ -1,26 +1,8 @@
 //! Cubic splines in flat space against exact ones, and what they refuse.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-use se3_geom::nalgebra::{Vector1, Vector2};
+use se3_geom::nalgebra::Vector1;
 use se3_geom::{CubicEnds, CubicSpline, Curve, SplineError};
-
-/// The C² spline of the thesis' Fig. 6.3, closed: eq. 6.10 with the figure's points.
-#[test]
-fn figure_6_3_closed_spline() {
-    let x = [2.0, 3.0, 4.0, 3.0, 2.0, 2.0, 3.0, 4.0, 2.0, 1.0, 1.0];
-    let y = [0.0, 0.0, 1.0, 2.0, 1.5, 2.0, 2.5, 4.0, 4.0, 2.0, 1.0];
-    let points: Vec<_> = x.into_iter().zip(y).map(|(x, y)| Vector2::new(x, y)).collect();
-    let knots: Vec<_> = (0..=points.len()).map(|i| i as f64).collect();
-    let curve = CubicSpline::through(&points, &knots, CubicEnds::Periodic).unwrap();
-    assert!(curve.is_closed());
-    for (i, point) in points.iter().enumerate() {
-        let (right, left) = (curve.derivatives(i as f64), curve.derivatives((i + points.len()) as f64 - 1e-13));
-        assert!((right.point - point).norm() < 1e-14);
-        // The parameter is rounded to 2e-15 at most and moved by 1e-13; jerks are below 40.
-        assert!((right.velocity - left.velocity).norm() < 1e-11);
-        assert!((right.acceleration - left.acceleration).norm() < 1e-11);
-    }
-}
 
 /// Splines against exact rational solutions (`data/make_cubic_splines.py`): value, slope and second derivative within a few
 /// roundings of the greatest of their kind, which near steep knots is large.

@@ -5,9 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use se3_geom::nalgebra::{DMatrix, DVector, UnitQuaternion, Vector1, Vector2, Vector3};
 use se3_geom::{
-    Bezier, ByArcLength, CubicEnds, CubicSpline, Curve, Derivatives, Ends, Euclidean, Geodesic, JetSpace, LieGroup,
-    LogError, Manifold, Parameterisation, PartialGeodesic, Pose, PoseSpline, R2, Screw, Se3, Se3Group, So3, So3Group,
-    Sphere, Twist, arc_length,
+    Bezier, ByArcLength, CubicEnds, CubicSpline, Curve, Derivatives, Ends, Euclidean, Geodesic, LieGroup, LogError,
+    Manifold, Parameterisation, PartialGeodesic, Pose, PoseSpline, R2, Screw, Se3, Se3Group, So3, So3Group, Sphere,
+    Twist, arc_length,
 };
 
 fn pose(p: [f64; 3], rotation_vector: [f64; 3]) -> Pose {
@@ -178,43 +178,6 @@ fn screws_turn_about_one_axis() {
     assert!((helix - exact).abs() < 1e-14 && helix > metric.distance(&screw.point(0.0), &screw.point(1.0)) + 0.1);
     let d = screw.derivatives(0.3);
     assert!((d.acceleration.linear.norm() - FRAC_PI_2 * FRAC_PI_2).abs() < 1e-14);
-}
-
-/// Thesis Fig. 6.1: the curve leaves and arrives at the given frames with the given velocities; on the product metric its origin
-/// is the ordinary Bézier curve of the origins, by Bernstein's polynomials (6.13).
-#[test]
-fn figure_6_1_frames_and_velocities() {
-    fn ends<S: JetSpace<Point = Pose, Tangent = Twist>>(space: S) -> Bezier<S> {
-        let (frames, velocities) = figure_6_1();
-        let curve = Bezier::from_end_velocities(space, frames, velocities).unwrap();
-        for (t, frame, velocity) in [(0.0, frames[0], velocities[0]), (1.0, frames[1], velocities[1])] {
-            let d = curve.derivatives(t);
-            assert!(Se3::default().distance(&d.point, &frame) < 1e-14);
-            assert!((d.velocity - velocity).to_vector().norm() < 1e-13, "{:?}", d.velocity);
-        }
-        curve
-    }
-    let product = ends(Se3::default());
-    let group = ends(Se3Group);
-    let controls = product.control_points().map(|p| p.translation.vector);
-    for k in 0..=20 {
-        let t = f64::from(k) / 20.0;
-        let u = 1.0 - t;
-        let weights = [u * u * u, 3.0 * t * u * u, 3.0 * t * t * u, t * t * t];
-        let origin: Vector3<f64> = controls.iter().zip(weights).map(|(p, w)| p * w).sum();
-        assert!((product.point(t).translation.vector - origin).norm() < 1e-14);
-        // All four rotations are about one axis, with angles 0, 0, π/3, π/2: a Bézier curve of angles.
-        let angle = weights[2] * PI / 3.0 + weights[3] * FRAC_PI_2;
-        for rotation in [product.point(t).rotation, group.point(t).rotation] {
-            assert!(So3.distance(&rotation, &So3Group::exp(Vector3::new(angle, 0.0, 0.0))) < 1e-14);
-        }
-    }
-    let apart = Se3::default().distance(&product.point(0.5), &group.point(0.5));
-    assert!(apart > 0.1, "the two structures give different curves: {apart}");
-    // Both differ from the geodesic, which knows no velocities.
-    let ([start, end], _) = figure_6_1();
-    let straight = Geodesic::between(Se3::default(), start, end).unwrap();
-    assert!(Se3::default().distance(&straight.point(0.3), &product.point(0.3)) > 0.1);
 }
 
 /// The group's Bézier curve by its definition: de Casteljau with plain screws, no jets.
