@@ -40,7 +40,13 @@ impl Panel {
         self.labels.push((place, text.into()));
     }
     /// The coordinate lines of a surface over a rectangle, `lines` in each direction, seen from `view`.
-    pub(crate) fn wireframe(&mut self, view: View, surface: impl Fn(f64, f64) -> [f64; 3], sides: [[f64; 2]; 2], lines: u32) {
+    pub(crate) fn wireframe(
+        &mut self,
+        view: View,
+        surface: impl Fn(f64, f64) -> [f64; 3],
+        sides: [[f64; 2]; 2],
+        lines: u32,
+    ) {
         const PIECES: u32 = 60;
         let along = |[low, high]: [f64; 2], part: f64| low + (high - low) * part;
         for i in 0..lines {
@@ -112,4 +118,13 @@ fn draw_panel(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Drawn
     }
     area.draw(&Text::new(panel.title.as_str(), (MARGIN_PIXELS / 2, 8), ("sans-serif", 17)))?;
     Ok(())
+}
+
+/// From dark blue (0) over red to yellow (1), lighter and lighter.
+pub(crate) fn shade(share: f64) -> RGBColor {
+    const STOPS: [[f64; 3]; 3] = [[20.0, 40.0, 140.0], [220.0, 50.0, 50.0], [240.0, 190.0, 40.0]];
+    let place = 2.0 * share.clamp(0.0, 1.0);
+    let (from, part) = if place < 1.0 { (0, place) } else { (1, place - 1.0) };
+    let [r, g, b] = [0, 1, 2].map(|k| (STOPS[from][k] + (STOPS[from + 1][k] - STOPS[from][k]) * part) as u8);
+    RGBColor(r, g, b)
 }
