@@ -55,7 +55,9 @@
 mod angle_series;
 mod block_tridiagonal;
 mod chart_functions;
+mod curvature_flow;
 mod curve;
+mod distance_map;
 mod euclidean;
 mod geodesic_flow;
 mod geodesic_search;
@@ -76,12 +78,16 @@ mod so3;
 mod sphere;
 mod spline_error;
 mod spline_rates;
+mod surface_grid;
+mod tridiagonal;
 mod twist;
 
+pub use curvature_flow::{CurvatureFlow, FlowError};
 pub use curve::{
     ArcLengthError, Bezier, ByArcLength, CubicEnds, CubicSpline, Curve, Derivatives, Geodesic, Jet, JetSpace,
     Parameterisation, PartialGeodesic, PoseJet, Screw, arc_length, centripetal_knots, curvature,
 };
+pub use distance_map::{DistanceMap, FrontError};
 pub use euclidean::{Euclidean, R2, R3};
 pub use group::{LieGroup, NoLogarithm, Se2Group, Se3Group, Sim2Group, So2Group, So3Group};
 pub use level_set::{Constraint, LevelSet, UnitSegments};
@@ -99,4 +105,5 @@ pub use so2::So2;
 pub use so3::So3;
 pub use sphere::Sphere;
 pub use spline_error::SplineError;
+pub use surface_grid::{SurfaceGrid, SurfaceGridError};
 pub use twist::Twist;

@@ -10,21 +10,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
 use nalgebra::{Matrix2, SMatrix, Vector1, Vector2, Vector3, Vector4};
 use se3_geom::{Constraint, HeightJet, LevelSet, LogError, Manifold, MongePatch, Sphere, UnitSegments, nalgebra};
-use surfaces::{egg_box, saddle};
-
-/// A hill, z = 2·exp(−x² − y²), around which geodesics pass on either side. Its greatest curvature is 4, at the top.
-fn hill() -> MongePatch<impl Fn(f64, f64) -> HeightJet> {
-    let jet = |x: f64, y: f64| {
-        let height = 2.0 * (-x * x - y * y).exp();
-        let p = Vector2::new(x, y);
-        HeightJet {
-            height,
-            gradient: p * (-2.0 * height),
-            hessian: (p * p.transpose() * 4.0 - Matrix2::identity() * 2.0) * height,
-        }
-    };
-    MongePatch::new(jet, PI / 4.0)
-}
+use surfaces::{egg_box, hill, saddle};
 
 struct Solved {
     surface: String,

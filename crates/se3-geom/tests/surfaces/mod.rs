@@ -1,4 +1,5 @@
-//! The surfaces of Examples 4.2 and 4.3.
+//! The surfaces of Examples 4.2 and 4.3, and one to go round.
+#![allow(dead_code)] // each test file uses a part
 
 use std::f64::consts::PI;
 
@@ -23,4 +24,18 @@ pub(crate) fn egg_box() -> MongePatch<impl Fn(f64, f64) -> HeightJet> {
         }
     };
     MongePatch::new(jet, PI)
+}
+
+/// A hill, z = 2·exp(−x² − y²), around which geodesics pass on either side. Its greatest curvature is 4, at the top.
+pub(crate) fn hill() -> MongePatch<impl Fn(f64, f64) -> HeightJet> {
+    let jet = |x: f64, y: f64| {
+        let height = 2.0 * (-x * x - y * y).exp();
+        let p = Vector2::new(x, y);
+        HeightJet {
+            height,
+            gradient: p * (-2.0 * height),
+            hessian: (p * p.transpose() * 4.0 - Matrix2::identity() * 2.0) * height,
+        }
+    };
+    MongePatch::new(jet, PI / 4.0)
 }
