@@ -250,7 +250,10 @@ fn the_curves_of_figure_6_1_keep_the_given_velocities() {
 #[test]
 fn the_spline_of_figure_6_3_is_closed_and_c2() {
     let numbers = figure_6_3::compute().unwrap();
-    let points = figure_6_3::POINTS.map(Vector2::from);
+    // (6.11), row by row as it is printed.
+    let x = [2.0, 3.0, 4.0, 3.0, 2.0, 2.0, 3.0, 4.0, 2.0, 1.0, 1.0];
+    let y = [0.0, 0.0, 1.0, 2.0, 1.5, 2.0, 2.5, 4.0, 4.0, 2.0, 1.0];
+    let points: Vec<_> = x.into_iter().zip(y).map(|(x, y)| Vector2::new(x, y)).collect();
     let n = points.len();
     assert_eq!((numbers.arriving.len(), numbers.leaving.len(), numbers.curve.len()), (n, n, 20 * n + 1));
     for i in 0..n {
