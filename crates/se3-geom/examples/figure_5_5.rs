@@ -118,7 +118,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let numbers = compute()?;
     draw(&numbers, &gallery_path("figure_5_5")?)?;
     println!("circle {:.9}, normal geodesic to M {:.9}", numbers.circle_length, numbers.normal_length);
-    println!("farthest point of the circle by its geodesic missed by {:.1e}", numbers.worst_miss);
+    println!("normal geodesics from all around C miss M by {:.1e}", numbers.worst_miss);
     println!("least distance to M by front propagation {:.6}", numbers.least_distance_by_front);
     Ok(())
 }
