@@ -32,7 +32,6 @@
 
 mod angle_series;
 mod block_tridiagonal;
-mod chart_functions;
 mod curve;
 mod euclidean;
 mod geodesic_flow;
@@ -54,6 +53,7 @@ mod so3;
 mod sphere;
 mod spline_error;
 mod spline_rates;
+mod stumpff;
 mod twist;
 
 pub use curve::{

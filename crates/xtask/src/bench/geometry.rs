@@ -20,7 +20,7 @@ type Row = (&'static str, (&'static str, f64), &'static str, (&'static str, &'st
 const NS: (&str, f64) = ("ns", 1e9);
 const MS: (&str, f64) = ("ms", 1e3);
 
-const ROWS: [Row; 8] = [
+const ROWS: [Row; 9] = [
     ("SO(3) exp", NS, "SO(3) exp", (PINOCCHIO_NAME, "SO(3) exp"), 11.0),
     ("SO(3) log", NS, "SO(3) log", (PINOCCHIO_NAME, "SO(3) log"), 15.0),
     ("SE(3) exp", NS, "SE(3) exp", (PINOCCHIO_NAME, "SE(3) exp"), 27.0),
@@ -28,6 +28,7 @@ const ROWS: [Row; 8] = [
     ("pose, twist, acceleration: sorted points", NS, "sorted", (SCIPY_NAME, "sorted"), 150.0),
     ("pose, twist, acceleration: random points", NS, "random", (SCIPY_NAME, "random"), 300.0),
     ("1e6 sorted points into a new vector", MS, "batch", (SCIPY_NAME, "batch"), 150.0),
+    ("1e6 sorted points into a vector used before", MS, "batch again", (SCIPY_NAME, "batch"), 150.0),
     ("fit of 1e4 knots", MS, "fit", (SCIPY_NAME, "fit"), 8.0),
 ];
 
