@@ -56,7 +56,7 @@ pub(crate) fn compute() -> Numbers {
 /// One panel a figure, the first segment black.
 pub(crate) fn draw(numbers: &Numbers, path: &Path) -> Result<(), Box<dyn Error>> {
     let panels = ["4.8", "4.9", "4.10"].iter().zip(&numbers.motions).map(|(figure, motion)| {
-        let mut panel = Panel::new(&format!("Figure {figure}: exp along {:?}", motion.direction.as_slice()));
+        let mut panel = Panel::new(format!("Figure {figure}: exp along {:?}", motion.direction.as_slice()));
         for (k, segment) in motion.segments.iter().enumerate() {
             let ends = [Vector2::new(segment[0], segment[1]), Vector2::new(segment[2], segment[3])];
             panel.line(ends, if k == 0 { BLACK } else { BLUE }, "");

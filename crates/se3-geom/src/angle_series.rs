@@ -1,12 +1,19 @@
 //! The even functions of an angle that rotations are made of, accurate at every angle.
 //!
-//! With x = θ²: a = sin θ/θ, b = (1 − cos θ)/θ², c = (θ − sin θ)/θ³ and their derivatives by x, doubled:
-//! f_s = (1/θ) df/dθ = 2 df/dx. All are entire in x. The quotients lose digits by cancellation for small θ, the power series by
-//! alternation for large θ; at the switch, x = 4, both keep 15 digits (the largest term of a series is below 1 there, and its
-//! 14th term is below 4¹⁴/30! ≈ 1e-24).
+//! With x = θ²: a = sin θ/θ, b = (1 − cos θ)/θ², c = (θ − sin θ)/θ³ and their derivatives f_s = (1/θ) df/dθ = 2 df/dx. All are
+//! entire in x. The quotients lose digits by cancellation for small θ, the power series by alternation for large θ.
 
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use crate::group::{LieGroup, So3Group};
+use crate::stumpff::{polynomial, stumpff};
+
+/// θ² below which the series serve: at 2 rad their largest term is below 1 and the quotients have lost nothing yet. A chart centred
+/// at a segment's midpoint seldom goes further.
 const SWITCH: f64 = 4.0;
-const TERMS: usize = 14;
+/// Ten terms leave 4¹³/26! ≈ 2e-19 in cos θ at the switch.
+const SIXTH: [f64; 10] = stumpff(6);
+const SEVENTH: [f64; 10] = stumpff(7);
 
 /// Coefficients of Jr and of its first two time derivatives.
 #[derive(Debug, Clone, Copy)]
@@ -25,28 +32,29 @@ pub(crate) struct AngleSeries {
     pub(crate) c_ss: f64,
 }
 
-/// Σₖ (−x)ᵏ/(2k + first)! with its first two derivatives by x times 2 and 4.
-fn alternating_series(x: f64, first: usize) -> [f64; 3] {
-    // Horner in the ratio of successive terms, differentiated along.
-    let (mut f, mut df, mut ddf) = (0.0, 0.0, 0.0);
-    for k in (0..TERMS).rev() {
-        // f_k = 1 − x/((2k+first+1)(2k+first+2)) · f_{k+1}
-        let ratio = -1.0 / (((2 * k + first + 1) * (2 * k + first + 2)) as f64);
-        ddf = ratio * (2.0 * df + x * ddf);
-        df = ratio * (f + x * df);
-        f = 1.0 + ratio * x * f;
-    }
-    let leading: f64 = (1..=first).map(|i| i as f64).product::<f64>().recip();
-    [f * leading, 2.0 * df * leading, 4.0 * ddf * leading]
-}
-
 impl AngleSeries {
+    #[inline]
     pub(crate) fn at_squared_angle(x: f64) -> Self {
-        if x < SWITCH {
-            let [b, b_s, b_ss] = alternating_series(x, 2);
-            let [c, c_s, c_ss] = alternating_series(x, 3);
-            return Self { b, c, b_s, c_s, b_ss, c_ss };
+        if x < SWITCH { Self::by_series(x) } else { Self::by_quotients(x) }
+    }
+
+    /// b = c₂ and c = c₃, and their slopes by n·cₙ₊₂ − cₙ₊₁, twice.
+    #[inline]
+    fn by_series(x: f64) -> Self {
+        let (c6, c7) = (polynomial(&SIXTH, x), polynomial(&SEVENTH, x));
+        let (c4, c5) = (1.0 / 24.0 - x * c6, 1.0 / 120.0 - x * c7);
+        Self {
+            b: 0.5 - x * c4,
+            c: 1.0 / 6.0 - x * c5,
+            b_s: 2.0 * c4 - (1.0 / 6.0 - x * c5),
+            c_s: 3.0 * c5 - c4,
+            b_ss: c4 - 5.0 * c5 + 8.0 * c6,
+            c_ss: c5 - 7.0 * c6 + 15.0 * c7,
         }
+    }
+
+    #[cold]
+    fn by_quotients(x: f64) -> Self {
         let theta = x.sqrt();
         let a = theta.sin() / theta;
         let b = (1.0 - theta.cos()) / x;
@@ -55,6 +63,25 @@ impl AngleSeries {
         let c_s = (b - 3.0 * c) / x;
         Self { b, c, b_s, c_s, b_ss: (c - b - 4.0 * b_s) / x, c_ss: (b_s - 5.0 * c_s) / x }
     }
+
+    /// Exp(φ), given the functions at x = φ·φ.
+    #[inline]
+    pub(crate) fn rotation(&self, phi: &Vector3<f64>, x: f64) -> UnitQuaternion<f64> {
+        if x >= SWITCH {
+            return far_rotation(phi);
+        }
+        let (cosine, sine_by_angle) = (1.0 - x * self.b, 1.0 - x * self.c);
+        // cos(θ/2) ≥ 0.54 here, so that the half angle costs no digits.
+        let half_cosine = (0.5 * (1.0 + cosine)).sqrt();
+        let imaginary = phi * (0.5 * sine_by_angle / half_cosine);
+        UnitQuaternion::new_unchecked(Quaternion::from_parts(half_cosine, imaginary))
+    }
+}
+
+/// Apart, so that what seldom happens does not stand in the way of what mostly does.
+#[cold]
+fn far_rotation(phi: &Vector3<f64>) -> UnitQuaternion<f64> {
+    So3Group::exp(*phi)
 }
 
 /// What a rotation and its first-order maps are made of: functions of half an angle, without cancellation at any angle.
@@ -83,24 +110,8 @@ pub(crate) struct JacobianCoefficients {
 /// root, a quotient or a sine. Terms stay below 1.3 in size up to there, so that alternation costs no digit.
 const HALF_ANGLE_SWITCH: f64 = 10.0;
 /// At the switch the first term left out is 2.5¹¹/24! ≈ 4e-20.
-const HALF_ANGLE_TERMS: usize = 11;
-const SECOND: [f64; HALF_ANGLE_TERMS] = stumpff_coefficients(2);
-const THIRD: [f64; HALF_ANGLE_TERMS] = stumpff_coefficients(3);
-
-/// (−1)ᵏ/(2k + first)!: the coefficients of the Stumpff function c_first(x), with c₀ = cos √x and cₙ = 1/n! − x·cₙ₊₂.
-const fn stumpff_coefficients<const N: usize>(first: usize) -> [f64; N] {
-    let mut coefficients = [0.0; N];
-    let (mut k, mut factorial, mut reached) = (0, 1.0, 0);
-    while k < N {
-        while reached < 2 * k + first {
-            reached += 1;
-            factorial *= reached as f64;
-        }
-        coefficients[k] = if k % 2 == 0 { 1.0 / factorial } else { -1.0 / factorial };
-        k += 1;
-    }
-    coefficients
-}
+const SECOND: [f64; 11] = stumpff(2);
+const THIRD: [f64; 11] = stumpff(3);
 
 impl HalfAngle {
     #[inline]
@@ -151,34 +162,44 @@ pub(crate) fn inverse_jacobian_coefficient(x: f64, e: f64) -> f64 {
     if x < INVERSE_SWITCH { polynomial(&D, x) } else { (1.0 - e) / x }
 }
 
-/// Even and odd terms apart: two chains half as long, which the processor runs side by side.
-#[inline]
-fn polynomial<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
-    let square = x * x;
-    let chain = |first: usize| coefficients.iter().skip(first).step_by(2).rev().fold(0.0, |sum, c| sum * square + c);
-    chain(0) + x * chain(1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Both branches at the same x, just on either side of the switch: a wrong sign or factor in one of them cannot hide.
+    /// Both ways at the same angles, on either side of the switch: they share no formula, so a wrong sign or factor shows.
     #[test]
-    fn branches_agree_at_the_switch() {
-        let (below, above) = (SWITCH * (1.0 - 1e-15), SWITCH);
-        let (s, q) = (AngleSeries::at_squared_angle(below), AngleSeries::at_squared_angle(above));
-        for (name, u, v) in [
-            ("b", s.b, q.b),
-            ("c", s.c, q.c),
-            ("b_s", s.b_s, q.b_s),
-            ("c_s", s.c_s, q.c_s),
-            ("b_ss", s.b_ss, q.b_ss),
-            ("c_ss", s.c_ss, q.c_ss),
-        ] {
-            // The quotient form of the second derivatives divides a few roundings of O(0.1) by x² = 16.
-            assert!((u - v).abs() < 2e-16 + 2e-15 * v.abs().max(0.02), "{name}: {u} {v}");
+    fn series_and_quotients_agree() {
+        for angle in [1.3, 1.9, 1.999_999, 2.0, 2.000_001, 2.1] {
+            let phi = Vector3::new(0.6, -0.48, 0.64) * angle;
+            let x = phi.norm_squared();
+            let (s, q) = (AngleSeries::by_series(x), AngleSeries::by_quotients(x));
+            for (name, u, v) in [
+                ("b", s.b, q.b),
+                ("c", s.c, q.c),
+                ("b_s", s.b_s, q.b_s),
+                ("c_s", s.c_s, q.c_s),
+                ("b_ss", s.b_ss, q.b_ss),
+                ("c_ss", s.c_ss, q.c_ss),
+            ] {
+                // A few roundings of the largest term, which is below 0.1 or 1/k! of the function's own series; the quotient form of
+                // the second derivatives divides as many by x² > 2.
+                assert!((u - v).abs() < 2e-16 + 2e-15 * v.abs().max(0.02), "{name} at {angle}: {u} {v}");
+            }
         }
+    }
+
+    #[test]
+    fn a_chart_has_the_rotation_of_the_exponential() {
+        for angle in [0.0, 1e-200, 1e-8, 0.1, 0.7, 1.3, 1.9, 1.999_999, 2.000_001, 3.0] {
+            let phi = Vector3::new(0.6, -0.48, 0.64) * angle;
+            let x = phi.norm_squared();
+            let rotation = AngleSeries::at_squared_angle(x).rotation(&phi, x);
+            assert!((rotation.coords - So3Group::exp(phi).coords).norm() < 4.0 * f64::EPSILON, "{angle}");
+        }
+    }
+
+    #[test]
+    fn branches_agree_at_the_switches() {
         let d_at = |x: f64| inverse_jacobian_coefficient(x, HalfAngle::of_squared_angle(x).half_angle_by_tangent());
         let (d, d_far) = (d_at(INVERSE_SWITCH * (1.0 - 1e-15)), d_at(INVERSE_SWITCH));
         // Two roundings of e, divided by x = 1/4.

@@ -54,7 +54,6 @@
 
 mod angle_series;
 mod block_tridiagonal;
-mod chart_functions;
 mod curvature_flow;
 mod curve;
 mod distance_map;
@@ -78,6 +77,7 @@ mod so3;
 mod sphere;
 mod spline_error;
 mod spline_rates;
+mod stumpff;
 mod surface_grid;
 mod tridiagonal;
 mod twist;

@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use crate::chart_functions::ChartFunctions;
+use crate::angle_series::AngleSeries;
 use crate::curve::Cubic;
 use crate::group::{LieGroup, So3Group};
 
@@ -45,7 +45,8 @@ impl RotationSegment {
     #[inline]
     pub(crate) fn at(&self, t: f64) -> RotationMotion {
         let [phi, p, q, r] = self.chart.at(t);
-        let s = ChartFunctions::at(&phi);
+        let x = phi.norm_squared();
+        let s = AngleSeries::at_squared_angle(x);
         // u = φ×φ̇ and w = φ×u with their derivatives.
         let u = phi.cross(&p);
         let u_dot = phi.cross(&q);
@@ -60,7 +61,7 @@ impl RotationSegment {
         let b_ddot = s.b_ss * half_x_dot * half_x_dot + s.b_s * half_x_ddot;
         let c_ddot = s.c_ss * half_x_dot * half_x_dot + s.c_s * half_x_ddot;
         RotationMotion {
-            rotation: self.midpoint * s.rotation,
+            rotation: self.midpoint * s.rotation(&phi, x),
             rate: p - u * s.b + w * s.c,
             acceleration: q - u * b_dot - u_dot * s.b + w * c_dot + w_dot * s.c,
             jerk: r - u * b_ddot - u_dot * (2.0 * b_dot) - u_ddot * s.b
@@ -88,7 +89,7 @@ pub(crate) struct QuadraticAcceleration {
 impl QuadraticAcceleration {
     pub(crate) fn new(theta: &Vector3<f64>) -> Self {
         let half_turn = theta * 0.5;
-        let ChartFunctions { c, b_s, c_s, .. } = ChartFunctions::at(&half_turn);
+        let AngleSeries { c, b_s, c_s, .. } = AngleSeries::at_squared_angle(half_turn.norm_squared());
         Self {
             half_turn,
             chart_from_rate: So3Group::right_jacobian_inverse(half_turn),

@@ -302,30 +302,6 @@ fn the_similarity_metric_is_invariant_under_rigid_motions_only() {
 }
 
 #[test]
-fn half_turns_have_no_logarithm() {
-    let pi = std::f64::consts::PI;
-    let distance = |refused: LogError| match refused {
-        LogError::CutLocus { distance } => distance,
-        other => panic!("{other}"),
-    };
-    let half_turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(0.0, 0.0, 1.0, 0.0));
-    assert_eq!(distance(So3.log(&UnitQuaternion::identity(), &half_turn).unwrap_err()), pi);
-    assert!((So3.distance(&UnitQuaternion::identity(), &half_turn) - pi).abs() < 1e-15);
-    let pose = Pose::from_parts(Vector3::new(3.0, 0.0, 0.0).into(), half_turn);
-    let refused = Se3::default().log(&Pose::identity(), &pose).unwrap_err();
-    assert!((distance(refused) - (pi.powi(2) + 9.0).sqrt()).abs() < 1e-14);
-
-    let half_turn = UnitComplex::new(pi);
-    assert_eq!(distance(So2.log(&UnitComplex::identity(), &half_turn).unwrap_err()), pi);
-    let pose = Isometry2::from_parts(nalgebra::Translation2::new(3.0, 0.0), half_turn);
-    let refused = Se2::default().log(&Isometry2::identity(), &pose).unwrap_err();
-    assert!((distance(refused) - (pi.powi(2) + 9.0).sqrt()).abs() < 1e-14);
-    let scaled = Similarity2::from_isometry(pose, 1.0);
-    assert_eq!(Sim2::default().log(&Similarity2::identity(), &scaled).unwrap_err(), refused);
-    assert_eq!(distance(Sphere.log(&Vector3::x(), &-Vector3::x()).unwrap_err()), pi);
-}
-
-#[test]
 fn numbers_that_are_no_rotation_have_no_logarithm() {
     let nan = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(f64::NAN, 0.0, 0.0, 0.0));
     assert_eq!(So3.log(&UnitQuaternion::identity(), &nan), Err(LogError::NotAPoint));

@@ -7,14 +7,22 @@ use nalgebra::{Matrix3, Quaternion, Similarity2, UnitComplex, UnitQuaternion, Ve
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use se3_geom::{
-    LieGroup, LogError, Manifold, NearestRotationError, Pose, Se2Group, Se3Group, Sim2Group, So2Group, So3, So3Group,
-    nalgebra, nearest_rotation,
+    LieGroup, LogError, Manifold, NearestRotationError, Pose, Se2, Se2Group, Se3, Se3Group, Sim2, Sim2Group, So2,
+    So2Group, So3, So3Group, Sphere, nalgebra, nearest_rotation,
 };
+
+/// The directions to the faces, edges and corners of a cube, and some in between.
+fn every_direction() -> impl Iterator<Item = Vector3<f64>> {
+    let signs = [-1.0, 0.0, 1.0];
+    let grid = signs.into_iter().flat_map(move |x| signs.into_iter().flat_map(move |y| signs.map(|z| [x, y, z])));
+    let cube = grid.filter(|direction| *direction != [0.0; 3]);
+    cube.chain([[1.0, -2.0, 3.0], [-0.6, 0.0, -0.8], [1e-9, 1.0, -1e-170]]).map(|v| Vector3::from(v).normalize())
+}
 
 /// At exactly half a turn both logarithms are valid, and one of them comes back: length π, and exp leads to the element.
 #[test]
 fn half_turns_have_a_group_logarithm() {
-    for axis in [Vector3::x(), Vector3::new(1.0, -2.0, 3.0).normalize(), Vector3::new(-0.6, 0.0, -0.8)] {
+    for axis in every_direction() {
         for w in [0.0, -0.0] {
             let half_turn = UnitQuaternion::new_unchecked(Quaternion::from_parts(w, axis));
             let log = So3Group::log(&half_turn).unwrap();
@@ -27,12 +35,57 @@ fn half_turns_have_a_group_logarithm() {
             assert!((Se3Group::exp(screw).to_homogeneous() - pose.to_homogeneous()).norm() < 16.0 * f64::EPSILON * 4.0);
             // The manifold, whose logarithm must be continuous, refuses the same half turn.
             let refused = So3.log(&UnitQuaternion::identity(), &half_turn);
-            assert_eq!(refused, Err(LogError::CutLocus { distance: PI }));
+            assert_eq!(refused, Err(LogError::CutLocus { distance: PI }), "{axis}");
         }
     }
     for sine in [0.0, -0.0] {
         let half_turn = UnitComplex::new_unchecked(nalgebra::Complex::new(-1.0, sine));
         assert_eq!(So2Group::log(&half_turn).unwrap().abs(), PI);
+    }
+}
+
+/// Where the shortest geodesic is not unique, the logarithm of a manifold says so and how far the two points are apart.
+#[test]
+fn on_the_cut_locus_the_error_names_the_distance() {
+    let named = |error: LogError, distance: f64| {
+        let LogError::CutLocus { distance: said } = error else { panic!("{error}") };
+        // The root of a sum of squares is off by a rounding or two.
+        assert!((said - distance).abs() <= 2.0 * f64::EPSILON * distance, "{said} {distance}");
+        assert!(error.to_string().contains(&said.to_string()));
+    };
+    let start = So3Group::exp(Vector3::new(0.3, -1.2, 0.5));
+    let offset = Vector3::new(2.0, -1.0, 2.0);
+    for axis in every_direction() {
+        let half_turn = UnitQuaternion::new_unchecked(Quaternion::from_parts(0.0, axis));
+        named(So3.log(&start, &(start * half_turn)).unwrap_err(), PI);
+        // Three metres weigh 2·3, half a turn 0.5·π.
+        let metric = Se3::with_weights(0.25, 4.0).unwrap();
+        let (p, q) = (Pose::identity(), Pose::from_parts(offset.into(), half_turn));
+        named(metric.log(&p, &q).unwrap_err(), (0.5 * PI).hypot(6.0));
+        named(Sphere.log(&axis, &-axis).unwrap_err(), PI);
+    }
+    let back = UnitComplex::new_unchecked(nalgebra::Complex::new(-1.0, 0.0));
+    named(So2.log(&UnitComplex::identity(), &back).unwrap_err(), PI);
+    let moved = nalgebra::Isometry2::from_parts(Vector2::new(3.0, 4.0).into(), back);
+    let planar = Se2::default();
+    let error = planar.log(&nalgebra::Isometry2::identity(), &moved).unwrap_err();
+    named(error, planar.distance(&nalgebra::Isometry2::identity(), &moved));
+    named(error, PI.hypot(5.0));
+    let scaled = Similarity2::from_isometry(moved, 1.0);
+    assert_eq!(Sim2::default().log(&Similarity2::identity(), &scaled).unwrap_err(), error);
+}
+
+/// A hair's breadth before half a turn there is one, and it leads to the other point; beyond, it comes round the other side.
+#[test]
+fn next_to_the_cut_locus_the_logarithm_is_the_shorter_way() {
+    for axis in every_direction() {
+        for gap in [1e-3, 1e-9, 1e-13] {
+            let before = So3.log(&UnitQuaternion::identity(), &So3Group::exp(axis * (PI - gap))).unwrap();
+            let beyond = So3.log(&UnitQuaternion::identity(), &So3Group::exp(axis * (PI + gap))).unwrap();
+            // The rounding of the angle given, and the logarithm's own.
+            assert!((before - axis * (PI - gap)).norm() <= 4e-15 * PI, "{axis} {gap}");
+            assert!((beyond + axis * (PI - gap)).norm() <= 4e-15 * PI, "{axis} {gap}");
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
-use crate::process::Running;
+use crate::process::{Running, build_executables};
 use crate::setup;
 
 const PEER_TIMEOUT_S: &str = "60";
@@ -48,26 +48,7 @@ struct Binaries {
 
 fn build(layout: &Layout) -> Outcome<Binaries> {
     println!("building the node and the simulation (the first time takes some minutes) …");
-    let mut cargo = layout.cargo();
-    cargo.args([
-        "build",
-        "--package",
-        "reorder-node",
-        "--package",
-        "mujoco-sim",
-        "--message-format=json-render-diagnostics",
-    ]);
-    let output = cargo.stderr(Stdio::inherit()).output().map_err(Failure::io("run", "cargo"))?;
-    if !output.status.success() {
-        return Err(Failure::Command { what: "cargo build".into(), status: output.status });
-    }
-    // Cargo itself says where it put the binaries; a target directory may be configured anywhere.
-    let lines = String::from_utf8_lossy(&output.stdout);
-    let executables: Vec<PathBuf> = lines
-        .lines()
-        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .filter_map(|message| message["executable"].as_str().map(PathBuf::from))
-        .collect();
+    let executables = build_executables(layout, &["build", "--package", "reorder-node", "--package", "mujoco-sim"])?;
     let find = |name: &str| {
         let found = executables.iter().find(|path| path.file_name().is_some_and(|file| file == name));
         found.cloned().ok_or_else(|| Failure::step("cargo build", format!("no executable {name} was built")))

@@ -24,6 +24,8 @@ pub(crate) enum Failure {
         "the sourced ROS 2 has no rclpy that `{python}` can import ({detail}): install it or unset AMENT_PREFIX_PATH"
     )]
     NoRclpy { python: String, detail: String },
+    #[error("there is no benchmark of {area}: choose one of {known}")]
+    UnknownArea { area: String, known: String },
     #[error("{what} failed: {detail}")]
     Step { what: String, detail: String },
     #[error("{what} failed with {status}")]

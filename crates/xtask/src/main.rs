@@ -1,5 +1,6 @@
 //! Every chore of the project, as `cargo xtask CHORE`.
 
+mod bench;
 mod demo;
 mod env;
 mod failure;
@@ -29,6 +30,8 @@ enum Chore {
         #[arg(default_value_t = 1000)]
         cases: u32,
     },
+    /// Measure an area (geometry) beside the libraries that others would use, and print the table
+    Bench { area: String },
     /// Set up, then run clippy and rustdoc over the workspace with warnings as errors
     Lint,
     /// Set up, then run every test there is
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
         Chore::Setup => setup::run(&layout),
         Chore::Demo => demo::run(&layout),
         Chore::Soak { name, cases } => soak::run(&layout, name, cases),
+        Chore::Bench { area } => bench::run(&layout, &area),
         Chore::Lint => test::lint(&layout),
         Chore::Test => test::test(&layout),
     };

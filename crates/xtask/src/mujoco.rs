@@ -38,7 +38,7 @@ fn download(layout: &Layout, requirement: &str) -> Outcome<PathBuf> {
         return Ok(wheel);
     }
     let options = ["download", "--no-deps", "--only-binary", ":all:", "--dest"].map(AsRef::as_ref);
-    python::pip(layout, options.into_iter().chain([folder.as_os_str(), requirement.as_ref()]))?;
+    python::pip(layout, &layout.venv(), options.into_iter().chain([folder.as_os_str(), requirement.as_ref()]))?;
     wheel_in(&folder).ok_or_else(|| Failure::Step {
         what: format!("downloading {requirement}"),
         detail: "pip left no wheel".to_owned(),

@@ -1,9 +1,27 @@
 //! Child processes that work together.
 
 use std::io::{BufRead, BufReader};
-use std::process::{Child, Command};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
 
+use serde_json::Value;
+
+use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
+
+/// Builds with cargo and returns the executables; cargo itself says where it put them, since a target directory may be
+/// configured anywhere.
+pub(crate) fn build_executables(layout: &Layout, arguments: &[&str]) -> Outcome<Vec<PathBuf>> {
+    let mut cargo = layout.cargo();
+    cargo.args(arguments).arg("--message-format=json-render-diagnostics");
+    let output = cargo.stderr(Stdio::inherit()).output().map_err(Failure::io("run", "cargo"))?;
+    if !output.status.success() {
+        return Err(Failure::Command { what: format!("cargo {}", arguments.join(" ")), status: output.status });
+    }
+    let messages = String::from_utf8_lossy(&output.stdout);
+    let executable = |line| serde_json::from_str::<Value>(line).ok()?["executable"].as_str().map(PathBuf::from);
+    Ok(messages.lines().filter_map(executable).collect())
+}
 
 /// A child process that does not outlive this one's interest in it.
 pub(crate) struct Running {

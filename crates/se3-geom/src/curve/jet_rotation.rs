@@ -5,6 +5,7 @@ use std::ops::{Add, Mul, Sub};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::Jet;
+use crate::stumpff::stumpff;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct JetVector(pub(crate) [Jet; 3]);
@@ -45,26 +46,12 @@ impl Mul<Jet> for JetVector {
     }
 }
 
-/// (−1)ᵏ/(2k + first)!: the even functions sin θ/θ (first = 1), (1 − cos θ)/θ² (2), (θ − sin θ)/θ³ (3) as series in θ². For the
-/// angles up to π that logarithms have, the last term is below π³⁰/31! ≈ 1e-19, and no term is so large that digits cancel.
-const fn even_series(first: usize) -> [f64; 16] {
-    let mut series = [0.0; 16];
-    let mut k = 0;
-    while k < 16 {
-        let (mut factorial, mut i) = (1.0, 2);
-        while i <= 2 * k + first {
-            factorial *= i as f64;
-            i += 1;
-        }
-        series[k] = if k % 2 == 0 { 1.0 / factorial } else { -1.0 / factorial };
-        k += 1;
-    }
-    series
-}
-const COSINE: [f64; 16] = even_series(0);
-const SINE_RATIO: [f64; 16] = even_series(1);
-pub(crate) const B: [f64; 16] = even_series(2);
-pub(crate) const C: [f64; 16] = even_series(3);
+/// As many terms as angles up to π need, which logarithms have: the last is below π³⁰/31! ≈ 1e-19, and none is so large that
+/// digits cancel.
+const COSINE: [f64; 16] = stumpff(0);
+const SINE_RATIO: [f64; 16] = stumpff(1);
+pub(crate) const B: [f64; 16] = stumpff(2);
+pub(crate) const C: [f64; 16] = stumpff(3);
 
 /// atan(√z)/√z = Σ (−z)ᵏ/(2k+1).
 const ARCTANGENT_RATIO: [f64; 13] = {
