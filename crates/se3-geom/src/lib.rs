@@ -107,3 +107,8 @@ pub use sphere::Sphere;
 pub use spline_error::SplineError;
 pub use surface_grid::{SurfaceGrid, SurfaceGridError};
 pub use twist::Twist;
+
+/// The README's example, compiled and run with the other examples.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;
