@@ -26,9 +26,9 @@ enum Chore {
     /// Run a long test at full length and print its figures
     Soak {
         name: soak::Soak,
-        /// How many random cases
+        /// How many random cases, or seconds
         #[arg(default_value_t = 1000)]
-        cases: u32,
+        amount: u32,
     },
     /// Measure an area (geometry) beside the libraries that others would use, and print the table
     Bench { area: String },
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
     let outcome = match Chore::parse() {
         Chore::Setup => setup::run(&layout),
         Chore::Demo => demo::run(&layout),
-        Chore::Soak { name, cases } => soak::run(&layout, name, cases),
+        Chore::Soak { name, amount } => soak::run(&layout, name, amount),
         Chore::Bench { area } => bench::run(&layout, &area),
         Chore::Lint => test::lint(&layout),
         Chore::Test => test::test(&layout),

@@ -1,5 +1,7 @@
 //! Long runs of tests that CI runs a small sample of.
 
+use std::fs;
+
 use clap::ValueEnum;
 
 use crate::env::Layout;
@@ -10,14 +12,44 @@ use crate::failure::{Failure, Outcome};
 pub(crate) enum Soak {
     /// Random curves, shuffled, planned and judged
     Plans,
+    /// Random coordinates, ordered: the number is how many seconds
+    FuzzOrders,
+    /// Random bytes, read as a table: the number is how many seconds
+    FuzzTables,
 }
 
-pub(crate) fn run(layout: &Layout, name: Soak, cases: u32) -> Outcome {
-    let (package, test) = match name {
-        Soak::Plans => ("planner", "random_plans"),
-    };
+pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
+    match name {
+        Soak::Plans => run_test(layout, "planner", "random_plans", amount),
+        Soak::FuzzOrders => fuzz(layout, "orders", amount),
+        Soak::FuzzTables => fuzz(layout, "tables", amount),
+    }
+}
+
+fn run_test(layout: &Layout, package: &str, test: &str, cases: u32) -> Outcome {
     let mut cargo = layout.cargo();
     cargo.args(["test", "--release", "--package", package, "--test", test, "--", "--nocapture"]);
     let status = cargo.env("REORDER_SOAK_CASES", cases.to_string()).status().map_err(Failure::io("run", "cargo"))?;
     if status.success() { Ok(()) } else { Err(Failure::Command { what: format!("soak {test}"), status }) }
+}
+
+/// What cargo-fuzz asks of the compiler, without the sanitizers that only a nightly one has: safe Rust has no use for them.
+const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+    -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+    -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing";
+
+/// libFuzzer for so many seconds. What it learns stays in `target/fuzz/TARGET`, and so does an input that crashed.
+fn fuzz(layout: &Layout, target: &str, seconds: u32) -> Outcome {
+    let folder = layout.root().join("target/fuzz").join(target);
+    fs::create_dir_all(&folder).map_err(Failure::io("create", &folder))?;
+    let package = layout.root().join("tests/fuzz");
+    let mut cargo = layout.cargo();
+    // Build scripts run on this machine and take no counters: flags go to the target only where one is named.
+    cargo.args(["run", "--release", "--target", "x86_64-unknown-linux-gnu", "--target-dir"]);
+    cargo.arg(layout.root().join("target/fuzz/build")).arg("--manifest-path").arg(package.join("Cargo.toml"));
+    cargo.args(["--bin", target, "--", "-max_len=4096", &format!("-max_total_time={seconds}")]);
+    cargo.arg(format!("-artifact_prefix={}/crash-", folder.display()));
+    cargo.arg(&folder).arg(package.join("seeds").join(target)).env("RUSTFLAGS", COVERAGE);
+    let status = cargo.status().map_err(Failure::io("run", "cargo"))?;
+    if status.success() { Ok(()) } else { Err(Failure::Command { what: format!("fuzz {target}"), status }) }
 }
