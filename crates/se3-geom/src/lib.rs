@@ -34,6 +34,7 @@ mod angle_series;
 mod block_tridiagonal;
 mod chart_functions;
 mod curve;
+mod embedding;
 mod euclidean;
 mod geodesic_flow;
 mod geodesic_search;
@@ -60,6 +61,7 @@ pub use curve::{
     ArcLengthError, Bezier, ByArcLength, CubicEnds, CubicSpline, Curve, Derivatives, Geodesic, Jet, JetSpace,
     Parameterisation, PartialGeodesic, PoseJet, Screw, arc_length, centripetal_knots, curvature,
 };
+pub use embedding::{Embedding, RoundFactor};
 pub use euclidean::{Euclidean, R2, R3};
 pub use geodesic_search::GeodesicError;
 pub use group::{LieGroup, NoLogarithm, Se2Group, Se3Group, Sim2Group, So2Group, So3Group};
