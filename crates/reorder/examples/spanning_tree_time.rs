@@ -15,7 +15,9 @@ use se3_geom::{Euclidean, Manifold, Se3, So3, Sphere};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [space, file, threads, repeats] = arguments.as_slice() else { panic!("usage: spanning_tree_time SPACE FILE THREADS REPEATS") };
+    let [space, file, threads, repeats] = arguments.as_slice() else {
+        panic!("usage: spanning_tree_time SPACE FILE THREADS REPEATS")
+    };
     let bytes = std::fs::read(file).unwrap();
     let numbers: Vec<f64> = bytes.chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().unwrap())).collect();
     drop(bytes);
@@ -41,11 +43,13 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    fn time<M: Manifold>(&self, manifold: &M, numbers: Vec<f64>, width: usize, point: impl Fn(&[f64]) -> M::Point)
-    where
-        M::Point: Sync,
-        M: Sync,
-    {
+    fn time<M: Manifold<Point: Sync> + Sync>(
+        &self,
+        manifold: &M,
+        numbers: Vec<f64>,
+        width: usize,
+        point: impl Fn(&[f64]) -> M::Point,
+    ) {
         let points: Vec<M::Point> = numbers.chunks_exact(width).map(point).collect();
         drop(numbers);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build().unwrap();

@@ -26,20 +26,22 @@ impl Candidates {
     /// Puts a partner in its place; the last falls out.
     #[inline(always)]
     pub(super) fn insert(&mut self, squared: f64, slot: u32, precedes: impl Fn(u32, u32) -> bool) {
-        let mut place = K;
-        while place > 0
-            && (squared < self.squared[place - 1]
-                || (squared == self.squared[place - 1] && precedes(slot, self.slots[place - 1])))
-        {
-            place -= 1;
-            if place + 1 < K {
-                self.squared[place + 1] = self.squared[place];
-                self.slots[place + 1] = self.slots[place];
-            }
+        let (mut squared, mut slot) = (squared, slot);
+        // No branch but the last is taken at random: it would be mispredicted half of the time.
+        let mut ties = false;
+        for own in &self.squared {
+            ties |= *own == squared;
         }
-        if place < K {
-            self.squared[place] = squared;
-            self.slots[place] = slot;
+        for k in 0..K {
+            let mut here = squared < self.squared[k];
+            if ties {
+                here |= squared == self.squared[k] && precedes(slot, self.slots[k]);
+            }
+            let (next, next_slot) = (self.squared[k], self.slots[k]);
+            self.squared[k] = if here { squared } else { next };
+            self.slots[k] = if here { slot } else { next_slot };
+            squared = if here { next } else { squared };
+            slot = if here { next_slot } else { slot };
         }
     }
 

@@ -131,25 +131,6 @@ impl Chords {
         self.combine::<FUSED, F, R>(to_leaf.flat[k], squared_angle).max(to_leaf.bound[k])
     }
 
-    /// Lower bound of the squared distances between the points of two boxes.
-    #[inline(always)]
-    pub(super) fn between_cells<const FUSED: bool, const F: usize, const R: usize>(
-        &self,
-        a: &Cell<F, R>,
-        b: &Cell<F, R>,
-    ) -> f64 {
-        let gap = |a: [f64; 2], b: [f64; 2]| greater(greater(b[0] - a[1], a[0] - b[1]), 0.0);
-        let mut flat = 0.0;
-        let mut round = 0.0;
-        for k in 0..F {
-            flat = add_square::<FUSED>(flat, gap(a.flat[k], b.flat[k]));
-        }
-        for k in 0..R {
-            round = add_square::<FUSED>(round, gap(a.round[k], b.round[k]));
-        }
-        self.bound::<FUSED, F, R>(flat, round)
-    }
-
     /// Lower bounds of the squared distances from each point of a leaf to the points of a box.
     #[inline(always)]
     pub(super) fn to_cell<const FUSED: bool, const F: usize, const R: usize>(

@@ -84,7 +84,8 @@ fn span<const F: usize, const R: usize>(embedding: &Embedding, distinct: &Distin
         record
     });
     let chords = Chords::new(embedding);
-    boruvka::spanning_pairs(&KdTree::<F, R>::new(records.collect(), chords.weights()), &chords)
+    let tree = KdTree::<F, R>::new(records.collect(), chords.weights());
+    boruvka::spanning_pairs(&tree, &chords)
 }
 
 fn normalise(unit: &mut [f64]) -> Option<()> {

@@ -53,12 +53,7 @@ impl Distinct {
     }
 }
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014), chained.
+/// Multiplies and rotates, word after word: the high bits of a product depend on all bits below.
 fn hash(point: &[f64]) -> u64 {
-    point.iter().fold(0, |state: u64, x| {
-        let mut z = (state ^ x.to_bits()).wrapping_add(0x9E37_79B9_7F4A_7C15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    })
+    point.iter().fold(0, |state: u64, x| (state ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29))
 }

@@ -50,15 +50,15 @@ pub(super) fn search_foreign<const F: usize, const R: usize>(
             && candidates.used as usize == K
             && candidates.bound <= components.shortest(own[lane]);
     }
-    let Some(any) = seeks.iter().position(|&seeks| seeks) else { return };
-    let alike = (0..LANES).all(|lane| !seeks[lane] || own[lane] == own[any]);
+    if !seeks.contains(&true) {
+        return;
+    }
     let mut seeker = Foreign {
         rows: &tree.rows,
         components,
         first_slot,
         own,
         seeks,
-        common: if alike { own[any] } else { MIXED },
         found: [(f64::INFINITY, NOBODY); LANES],
         reach: [-1.0; LANES],
     };
@@ -82,8 +82,6 @@ struct Foreign<'a> {
     first_slot: usize,
     own: [u32; LANES],
     seeks: [bool; LANES],
-    /// The component of all lanes that seek, or `MIXED`.
-    common: u32,
     found: [(f64, u32); LANES],
     reach: [f64; LANES],
 }
@@ -102,12 +100,13 @@ impl Seeker for Foreign<'_> {
         }
     }
     #[inline(always)]
-    fn wants(&self, node: usize) -> bool {
-        self.common == MIXED || self.components.of_node[node] != self.common
-    }
-    #[inline(always)]
-    fn lane_wants(&self, lane: usize, node: usize) -> bool {
-        self.components.of_node[node] != self.own[lane]
+    fn wanting(&self, node: usize) -> u32 {
+        let component = self.components.of_node[node];
+        let mut lanes = 0;
+        for lane in 0..LANES {
+            lanes |= u32::from(self.own[lane] != component) << lane;
+        }
+        lanes
     }
     #[inline(always)]
     fn admits(&self, lane: usize, slot: usize) -> bool {

@@ -76,10 +76,6 @@ impl<const F: usize, const R: usize> KdTree<F, R> {
         let link = self.links[node];
         if link & LEAF != 0 { Below::Leaf((link ^ LEAF) as usize) } else { Below::Nodes([node + 1, link as usize]) }
     }
-
-    pub(super) fn cell_of_leaf(&self, leaf: usize) -> &Cell<F, R> {
-        &self.cells[self.node_of_leaf[leaf] as usize]
-    }
 }
 
 /// A subtree under construction.
@@ -158,11 +154,6 @@ impl<const F: usize, const R: usize> Cell<F, R> {
             (_, Some((k, _))) => Axis::Round(k),
             (flat, None) => Axis::Flat(flat.map_or(0, |(k, _)| k)),
         }
-    }
-
-    /// The box around the antipodes.
-    pub(super) fn opposite(&self) -> Self {
-        Self { flat: self.flat, round: self.round.map(|[low, high]| [-high, -low]) }
     }
 }
 

@@ -43,12 +43,8 @@ impl Seeker for Nearest<'_> {
     #[inline(always)]
     fn refresh(&mut self) {}
     #[inline(always)]
-    fn wants(&self, _: usize) -> bool {
-        true
-    }
-    #[inline(always)]
-    fn lane_wants(&self, _: usize, _: usize) -> bool {
-        true
+    fn wanting(&self, _: usize) -> u32 {
+        u32::MAX
     }
     #[inline(always)]
     fn admits(&self, lane: usize, slot: usize) -> bool {

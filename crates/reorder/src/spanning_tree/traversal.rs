@@ -1,7 +1,7 @@
 //! A search for all points of one leaf at once.
 
 use super::chord::Chords;
-use super::kd_tree::{Below, Cell, KdTree, LANES, Leaf};
+use super::kd_tree::{Below, KdTree, LANES, Leaf};
 use super::vectorised::{self, Task};
 
 /// What a search wants: for each point of the querying leaf, partners within a squared reach that shrinks as they are found.
@@ -10,10 +10,8 @@ pub(super) trait Seeker {
     fn reach(&self) -> &[f64; LANES];
     /// Reaches may also shrink for reasons of the seeker's own, before a leaf is looked at.
     fn refresh(&mut self);
-    /// Whether any point below the node can be wanted.
-    fn wants(&self, node: usize) -> bool;
-    /// Whether any point of the leaf below `node` can be wanted by the lane.
-    fn lane_wants(&self, lane: usize, node: usize) -> bool;
+    /// The lanes, as bits, that may want a point below the node.
+    fn wanting(&self, node: usize) -> u32;
     /// Whether the point at `slot` can be wanted by the lane.
     fn admits(&self, lane: usize, slot: usize) -> bool;
     /// A partner within reach.
@@ -42,66 +40,63 @@ impl<const F: usize, const R: usize, S: Seeker> Task for Search<'_, F, R, S> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(mut self) {
-        let (points, cell) = (&self.tree.leaves[self.leaf], self.tree.cell_of_leaf(self.leaf));
-        self.descend::<FUSED>(points, cell);
+        let points = &self.tree.leaves[self.leaf];
+        self.descend::<FUSED>(points);
         if self.chords.antipodes_identified {
-            self.descend::<FUSED>(&points.opposite(), &cell.opposite());
+            self.descend::<FUSED>(&points.opposite());
         }
     }
 }
 
 impl<const F: usize, const R: usize, S: Seeker> Search<'_, F, R, S> {
     #[inline(always)]
-    fn descend<const FUSED: bool>(&mut self, points: &Leaf<F, R>, cell: &Cell<F, R>) {
+    fn descend<const FUSED: bool>(&mut self, points: &Leaf<F, R>) {
         // Never deeper than the tree, whose leaves are numbered in 31 bits.
-        let mut stack = [(0.0, 0_u32); 32];
+        let mut stack = [(0, [0.0; LANES]); 32];
         let mut height = 1;
-        stack[0].0 = self.chords.between_cells::<FUSED, F, R>(cell, &self.tree.cells[0]);
-        let mut radius = largest(self.seeker.reach());
         while height > 0 {
             height -= 1;
-            let (bound, node) = stack[height];
-            let mut node = node as usize;
-            if bound > radius || !self.seeker.wants(node) {
-                continue;
-            }
-            loop {
+            let (mut node, mut bounds) = stack[height];
+            while self.wanting(node, &bounds) != 0 {
                 match self.tree.below(node) {
                     Below::Leaf(leaf) => {
                         self.seeker.refresh();
-                        self.visit::<FUSED>(points, node, leaf);
-                        radius = largest(self.seeker.reach());
+                        self.visit::<FUSED>(points, self.wanting(node, &bounds), leaf);
                         break;
                     }
                     Below::Nodes([left, right]) => {
-                        let a = (self.chords.between_cells::<FUSED, F, R>(cell, &self.tree.cells[left]), left as u32);
-                        let b = (self.chords.between_cells::<FUSED, F, R>(cell, &self.tree.cells[right]), right as u32);
-                        let (near, far) = if b.0 < a.0 { (b, a) } else { (a, b) };
-                        if far.0 <= radius {
+                        let a = self.chords.to_cell::<FUSED, F, R>(points, &self.tree.cells[left]);
+                        let b = self.chords.to_cell::<FUSED, F, R>(points, &self.tree.cells[right]);
+                        let reach = self.seeker.reach();
+                        let (near, far) = if remoteness(&b, reach) < remoteness(&a, reach) {
+                            ((right, b), (left, a))
+                        } else {
+                            ((left, a), (right, b))
+                        };
+                        if within(&far.1, reach) != 0 {
                             stack[height] = far;
                             height += 1;
                         }
-                        node = near.1 as usize;
-                        if near.0 > radius || !self.seeker.wants(node) {
-                            break;
-                        }
+                        (node, bounds) = near;
                     }
                 }
             }
         }
     }
 
+    /// The lanes that may find something below a node.
     #[inline(always)]
-    fn visit<const FUSED: bool>(&mut self, points: &Leaf<F, R>, node: usize, leaf: usize) {
-        let to_cell = self.chords.to_cell::<FUSED, F, R>(points, &self.tree.cells[node]);
+    fn wanting(&self, node: usize, bounds: &[f64; LANES]) -> u32 {
+        let lanes = within(bounds, self.seeker.reach());
+        if lanes == 0 { 0 } else { lanes & self.seeker.wanting(node) }
+    }
+
+    #[inline(always)]
+    fn visit<const FUSED: bool>(&mut self, points: &Leaf<F, R>, mut lanes: u32, leaf: usize) {
         let others = &self.tree.leaves[leaf];
-        let mut lanes = within(&to_cell, self.seeker.reach());
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
-            if !self.seeker.lane_wants(lane, node) {
-                continue;
-            }
             let to_leaf = self.chords.to_leaf::<FUSED, F, R>(points, lane, others);
             let mut hits = within(&to_leaf.bound, &[self.seeker.reach()[lane]; LANES]);
             while hits != 0 {
@@ -130,11 +125,12 @@ fn within(values: &[f64; LANES], limits: &[f64; LANES]) -> u32 {
     mask
 }
 
+/// The sum of the bounds, none counted beyond its reach.
 #[inline(always)]
-fn largest(values: &[f64; LANES]) -> f64 {
-    let mut largest = values[0];
-    for &value in &values[1..] {
-        largest = if value > largest { value } else { largest };
+fn remoteness(bounds: &[f64; LANES], reach: &[f64; LANES]) -> f64 {
+    let mut sums = [0.0; 4];
+    for k in 0..LANES {
+        sums[k % 4] += if bounds[k] < reach[k] { bounds[k] } else { reach[k] };
     }
-    largest
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
