@@ -2,6 +2,7 @@
 
 use nalgebra::SVector;
 
+use crate::embedding::Embedding;
 use crate::manifold::{LogError, Manifold};
 
 /// ℝᴺ with the ordinary distance: the flat space that the others are compared with (thesis §4.1).
@@ -53,5 +54,11 @@ impl<const N: usize> Manifold for Euclidean<N> {
     }
     fn is_finite(&self, p: &Self::Point) -> bool {
         p.iter().all(|x| x.is_finite())
+    }
+    fn embedding(&self) -> Option<Embedding> {
+        Some(Embedding::flat(N, 1.0))
+    }
+    fn embed(&self, p: &Self::Point, coordinates: &mut [f64]) {
+        coordinates[..N].copy_from_slice(p.as_slice());
     }
 }

@@ -57,6 +57,7 @@ mod block_tridiagonal;
 mod curvature_flow;
 mod curve;
 mod distance_map;
+mod embedding;
 mod euclidean;
 mod geodesic_flow;
 mod geodesic_search;
@@ -88,6 +89,7 @@ pub use curve::{
     Parameterisation, PartialGeodesic, PoseJet, Screw, arc_length, centripetal_knots, curvature,
 };
 pub use distance_map::{DistanceMap, FrontError};
+pub use embedding::{Embedding, RoundFactor};
 pub use euclidean::{Euclidean, R2, R3};
 pub use group::{LieGroup, NoLogarithm, Se2Group, Se3Group, Sim2Group, So2Group, So3Group};
 pub use level_set::{Constraint, LevelSet, UnitSegments};

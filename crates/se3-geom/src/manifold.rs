@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use crate::embedding::Embedding;
+
 /// A tangent vector: plain data that adds and scales.
 pub trait Tangent:
     Copy + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<f64, Output = Self>
@@ -78,6 +80,17 @@ pub trait Manifold {
 
     /// Whether every coordinate of the point is a finite number.
     fn is_finite(&self, p: &Self::Point) -> bool;
+
+    /// The coordinates in which the distance is a chord and an angle; `None` where it has no such form.
+    fn embedding(&self) -> Option<Embedding> {
+        None
+    }
+
+    /// Writes those coordinates of `p`; nothing where [`Self::embedding`] is `None`.
+    ///
+    /// # Panics
+    /// If there is not room for [`Embedding::dimension`] numbers.
+    fn embed(&self, _p: &Self::Point, _coordinates: &mut [f64]) {}
 
     /// Length of a tangent vector at `p`: √⟨v, v⟩.
     fn norm(&self, p: &Self::Point, v: Self::Tangent) -> f64 {

@@ -2,6 +2,7 @@
 
 use nalgebra::{Isometry2, UnitComplex};
 
+use crate::embedding::Embedding;
 use crate::manifold::{LogError, Manifold};
 use crate::planar_twist::PlanarTwist;
 use crate::so2::So2;
@@ -79,5 +80,12 @@ impl Manifold for Se2 {
     }
     fn is_finite(&self, p: &Self::Point) -> bool {
         So2.is_finite(&p.rotation) && p.translation.vector.iter().all(|x| x.is_finite())
+    }
+    fn embedding(&self) -> Option<Embedding> {
+        Some(Embedding::flat(2, self.beta).with_sphere(2, self.alpha))
+    }
+    fn embed(&self, p: &Self::Point, coordinates: &mut [f64]) {
+        coordinates[..2].copy_from_slice(p.translation.vector.as_slice());
+        So2.embed(&p.rotation, &mut coordinates[2..]);
     }
 }

@@ -1,5 +1,6 @@
 //! Poses as a Riemannian manifold.
 
+use crate::embedding::Embedding;
 use crate::group::{LieGroup, So3Group};
 use crate::manifold::{LogError, Manifold};
 use crate::pose::Pose;
@@ -99,5 +100,12 @@ impl Manifold for Se3 {
     }
     fn is_finite(&self, p: &Pose) -> bool {
         So3.is_finite(&p.rotation) && p.translation.vector.iter().all(|x| x.is_finite())
+    }
+    fn embedding(&self) -> Option<Embedding> {
+        Some(Embedding::flat(3, self.beta).with_rotations(self.alpha))
+    }
+    fn embed(&self, p: &Self::Point, coordinates: &mut [f64]) {
+        coordinates[..3].copy_from_slice(p.translation.vector.as_slice());
+        So3.embed(&p.rotation, &mut coordinates[3..]);
     }
 }

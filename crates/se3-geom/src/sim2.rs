@@ -2,6 +2,7 @@
 
 use nalgebra::{Isometry2, Similarity2, UnitComplex};
 
+use crate::embedding::Embedding;
 use crate::manifold::{LogError, Manifold};
 use crate::planar_twist::SimilarityTwist;
 use crate::so2::So2;
@@ -99,5 +100,15 @@ impl Manifold for Sim2 {
     fn is_finite(&self, p: &Self::Point) -> bool {
         let rotation = So2.is_finite(&p.isometry.rotation);
         rotation && p.scaling().is_finite() && p.isometry.translation.vector.iter().all(|x| x.is_finite())
+    }
+    fn embedding(&self) -> Option<Embedding> {
+        Some(Embedding::flat(3, self.beta).with_sphere(2, self.alpha))
+    }
+    fn embed(&self, p: &Self::Point, coordinates: &mut [f64]) {
+        let isometry = &p.isometry;
+        coordinates[..2].copy_from_slice(isometry.translation.vector.as_slice());
+        // Flat coordinates share the weight β.
+        coordinates[2] = p.scaling().ln() * (self.alpha / self.beta).sqrt();
+        So2.embed(&isometry.rotation, &mut coordinates[3..]);
     }
 }

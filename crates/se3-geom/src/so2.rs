@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::UnitComplex;
 
+use crate::embedding::Embedding;
 use crate::manifold::{LogError, Manifold};
 
 /// SO(2) with its bi-invariant metric: the distance of two rotations is the angle between them, in rad.
@@ -70,5 +71,11 @@ impl Manifold for So2 {
     }
     fn is_finite(&self, p: &Self::Point) -> bool {
         p.re.is_finite() && p.im.is_finite()
+    }
+    fn embedding(&self) -> Option<Embedding> {
+        Some(Embedding::flat(0, 0.0).with_sphere(2, 1.0))
+    }
+    fn embed(&self, p: &Self::Point, coordinates: &mut [f64]) {
+        coordinates[..2].copy_from_slice(&[p.re, p.im]);
     }
 }

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::embedding::Embedding;
 use crate::group::{LieGroup, So3Group, logarithm};
 use crate::manifold::{LogError, Manifold};
 
@@ -69,6 +70,12 @@ impl Manifold for So3 {
     }
     fn is_finite(&self, p: &Self::Point) -> bool {
         p.coords.iter().all(|x| x.is_finite())
+    }
+    fn embedding(&self) -> Option<Embedding> {
+        Some(Embedding::flat(0, 0.0).with_rotations(1.0))
+    }
+    fn embed(&self, p: &Self::Point, coordinates: &mut [f64]) {
+        coordinates[..4].copy_from_slice(p.coords.as_slice());
     }
 }
 

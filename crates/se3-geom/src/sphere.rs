@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
+use crate::embedding::Embedding;
 use crate::manifold::{LogError, Manifold};
 
 /// The unit sphere S² ⊂ ℝ³ with the metric of the surrounding space (thesis §4.3); distances are angles in rad.
@@ -80,6 +81,12 @@ impl Manifold for Sphere {
     }
     fn is_finite(&self, p: &Self::Point) -> bool {
         p.iter().all(|x| x.is_finite())
+    }
+    fn embedding(&self) -> Option<Embedding> {
+        Some(Embedding::flat(0, 0.0).with_sphere(3, 1.0))
+    }
+    fn embed(&self, p: &Self::Point, coordinates: &mut [f64]) {
+        coordinates[..3].copy_from_slice(p.as_slice());
     }
 }
 

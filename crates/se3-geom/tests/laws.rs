@@ -83,6 +83,15 @@ fn manifold_laws<M: Manifold, S: Strategy<Value = (M::Point, [M::Tangent; 3])>>(
         );
         assert_eq!(m.distance(&a, &a), 0.0);
         assert!(m.distance(&a, &c) <= m.distance(&a, &b) + m.distance(&b, &c) + tolerance * scale, "triangle");
+        if let Some(embedding) = m.embedding() {
+            let coordinates = [&a, &b].map(|p| {
+                let mut coordinates = vec![f64::NAN; embedding.dimension()];
+                m.embed(p, &mut coordinates);
+                coordinates
+            });
+            let embedded = embedding.squared_distance(&coordinates[0], &coordinates[1]).sqrt();
+            assert!((embedded - m.distance(&a, &b)).abs() < tolerance * scale, "embedding {a:?} {b:?}");
+        }
     });
     transport_laws(Effort { cases, tolerance }, m, sample, size, gap);
 }

@@ -1,0 +1,60 @@
+//! The first few nearest neighbours of every point.
+
+use rayon::prelude::*;
+
+use super::candidates::{Candidates, K, NOBODY, tie_precedes};
+use super::chord::Chords;
+use super::kd_tree::{KdTree, LANES};
+use super::traversal::{Seeker, search};
+
+/// The candidates of every slot.
+pub(super) fn nearest_neighbours<const F: usize, const R: usize>(
+    tree: &KdTree<F, R>,
+    chords: &Chords,
+) -> Vec<Candidates> {
+    let mut all = vec![Candidates::NONE; tree.rows.len()];
+    all.par_chunks_mut(LANES).enumerate().for_each(|(leaf, candidates)| {
+        let mut reach = [-1.0; LANES];
+        reach[..candidates.len()].fill(f64::MAX);
+        let mut seeker = Nearest { rows: &tree.rows, first_slot: leaf * LANES, candidates, reach };
+        search(tree, chords, leaf, &mut seeker);
+        for candidates in seeker.candidates {
+            // A list that is not full holds everyone.
+            if candidates.slots[K - 1] != NOBODY {
+                candidates.bound = candidates.squared[K - 1];
+            }
+        }
+    });
+    all
+}
+
+struct Nearest<'a> {
+    rows: &'a [u32],
+    first_slot: usize,
+    candidates: &'a mut [Candidates],
+    reach: [f64; LANES],
+}
+
+impl Seeker for Nearest<'_> {
+    #[inline(always)]
+    fn reach(&self) -> &[f64; LANES] {
+        &self.reach
+    }
+    #[inline(always)]
+    fn refresh(&mut self) {}
+    #[inline(always)]
+    fn wanting(&self, _: usize) -> u32 {
+        u32::MAX
+    }
+    #[inline(always)]
+    fn admits(&self, lane: usize, slot: usize) -> bool {
+        slot != self.first_slot + lane
+    }
+    #[inline(always)]
+    fn take(&mut self, lane: usize, slot: usize, squared_distance: f64) {
+        let (rows, own) = (self.rows, self.first_slot + lane);
+        let candidates = &mut self.candidates[lane];
+        candidates.insert(squared_distance, slot as u32, |a, b| tie_precedes(rows, own, a, b));
+        self.reach[lane] = candidates.squared[K - 1];
+    }
+}

@@ -1,0 +1,136 @@
+//! A search for all points of one leaf at once.
+
+use super::chord::Chords;
+use super::kd_tree::{Below, KdTree, LANES, Leaf};
+use super::vectorised::{self, Task};
+
+/// What a search wants: for each point of the querying leaf, partners within a squared reach that shrinks as they are found.
+pub(super) trait Seeker {
+    /// The squared reach of each lane; negative where a lane seeks nothing.
+    fn reach(&self) -> &[f64; LANES];
+    /// Reaches may also shrink for reasons of the seeker's own, before a leaf is looked at.
+    fn refresh(&mut self);
+    /// The lanes, as bits, that may want a point below the node.
+    fn wanting(&self, node: usize) -> u32;
+    /// Whether the point at `slot` can be wanted by the lane.
+    fn admits(&self, lane: usize, slot: usize) -> bool;
+    /// A partner within reach.
+    fn take(&mut self, lane: usize, slot: usize, squared_distance: f64);
+}
+
+/// Shows a seeker everything within reach of the points of a leaf, nearest boxes first.
+pub(super) fn search<const F: usize, const R: usize>(
+    tree: &KdTree<F, R>,
+    chords: &Chords,
+    leaf: usize,
+    seeker: &mut impl Seeker,
+) {
+    vectorised::run(Search { tree, chords, leaf, seeker });
+}
+
+struct Search<'a, const F: usize, const R: usize, S> {
+    tree: &'a KdTree<F, R>,
+    chords: &'a Chords,
+    leaf: usize,
+    seeker: &'a mut S,
+}
+
+impl<const F: usize, const R: usize, S: Seeker> Task for Search<'_, F, R, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(mut self) {
+        let points = &self.tree.leaves[self.leaf];
+        self.descend::<FUSED>(points);
+        if self.chords.antipodes_identified {
+            self.descend::<FUSED>(&points.opposite());
+        }
+    }
+}
+
+impl<const F: usize, const R: usize, S: Seeker> Search<'_, F, R, S> {
+    #[inline(always)]
+    fn descend<const FUSED: bool>(&mut self, points: &Leaf<F, R>) {
+        // Never deeper than the tree, whose leaves are numbered in 31 bits.
+        let mut stack = [(0, [0.0; LANES]); 32];
+        let mut height = 1;
+        while height > 0 {
+            height -= 1;
+            let (mut node, mut bounds) = stack[height];
+            while self.wanting(node, &bounds) != 0 {
+                match self.tree.below(node) {
+                    Below::Leaf(leaf) => {
+                        self.seeker.refresh();
+                        self.visit::<FUSED>(points, self.wanting(node, &bounds), leaf);
+                        break;
+                    }
+                    Below::Nodes([left, right]) => {
+                        let a = self.chords.to_cell::<FUSED, F, R>(points, &self.tree.cells[left]);
+                        let b = self.chords.to_cell::<FUSED, F, R>(points, &self.tree.cells[right]);
+                        let reach = self.seeker.reach();
+                        let (near, far) = if remoteness(&b, reach) < remoteness(&a, reach) {
+                            ((right, b), (left, a))
+                        } else {
+                            ((left, a), (right, b))
+                        };
+                        if within(&far.1, reach) != 0 {
+                            stack[height] = far;
+                            height += 1;
+                        }
+                        (node, bounds) = near;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The lanes that may find something below a node.
+    #[inline(always)]
+    fn wanting(&self, node: usize, bounds: &[f64; LANES]) -> u32 {
+        let lanes = within(bounds, self.seeker.reach());
+        if lanes == 0 { 0 } else { lanes & self.seeker.wanting(node) }
+    }
+
+    #[inline(always)]
+    fn visit<const FUSED: bool>(&mut self, points: &Leaf<F, R>, mut lanes: u32, leaf: usize) {
+        let others = &self.tree.leaves[leaf];
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            let to_leaf = self.chords.to_leaf::<FUSED, F, R>(points, lane, others);
+            let mut hits = within(&to_leaf.bound, &[self.seeker.reach()[lane]; LANES]);
+            while hits != 0 {
+                let k = hits.trailing_zeros() as usize;
+                hits &= hits - 1;
+                let slot = leaf * LANES + k;
+                if !self.seeker.admits(lane, slot) {
+                    continue;
+                }
+                let squared_distance = self.chords.exact::<FUSED, F, R>(&to_leaf, k, points, lane, others);
+                if squared_distance <= self.seeker.reach()[lane] {
+                    self.seeker.take(lane, slot, squared_distance);
+                }
+            }
+        }
+    }
+}
+
+/// Bit k: `values[k]` is at most `limits[k]`.
+#[inline(always)]
+fn within(values: &[f64; LANES], limits: &[f64; LANES]) -> u32 {
+    let mut mask = 0;
+    for k in 0..LANES {
+        mask |= u32::from(values[k] <= limits[k]) << k;
+    }
+    mask
+}
+
+/// The sum of the bounds, none counted beyond its reach.
+#[inline(always)]
+fn remoteness(bounds: &[f64; LANES], reach: &[f64; LANES]) -> f64 {
+    let mut sums = [0.0; 4];
+    for k in 0..LANES {
+        sums[k % 4] += if bounds[k] < reach[k] { bounds[k] } else { reach[k] };
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
