@@ -51,13 +51,13 @@ pub(crate) struct Measured<M: Manifold> {
 impl<M: Manifold> Measured<M> {
     /// A curve over t in [0, 2π).
     pub(crate) fn closed(manifold: M, at: impl Fn(f64) -> M::Point + 'static) -> Self {
-        Self::measured(manifold, Box::new(at), true, TAU)
+        Self::over(manifold, Box::new(at), true, TAU)
     }
     /// The part of a curve over t in [0, span].
     pub(crate) fn open(manifold: M, at: impl Fn(f64) -> M::Point + 'static, span: f64) -> Self {
-        Self::measured(manifold, Box::new(at), false, span)
+        Self::over(manifold, Box::new(at), false, span)
     }
-    fn measured(manifold: M, at: Box<dyn Fn(f64) -> M::Point>, closed: bool, span: f64) -> Self {
+    fn over(manifold: M, at: Box<dyn Fn(f64) -> M::Point>, closed: bool, span: f64) -> Self {
         let step = span / GRID as f64;
         let points: Vec<_> = (0..=GRID).map(|k| at(step * k as f64)).collect();
         let mut lengths = vec![0.0];
@@ -151,7 +151,7 @@ fn federer_reach<M: Manifold>(manifold: &M, points: &[M::Point], tangents: &[M::
 
 /// Closed in SE(3), one radian counting as `metres_per_radian`: three harmonics in every coordinate of position and of the
 /// rotation vector.
-pub(crate) fn pose_curve(random: &mut Random) -> impl Fn(f64) -> Pose + 'static {
+pub(crate) fn pose_curve(random: &mut Random) -> impl Fn(f64) -> Pose + use<> {
     let h: [Harmonics; 6] = std::array::from_fn(|_| Harmonics::random(random));
     move |t| {
         let [x, y, z, a, b, c] = std::array::from_fn(|i| h[i].at(t));
@@ -160,25 +160,25 @@ pub(crate) fn pose_curve(random: &mut Random) -> impl Fn(f64) -> Pose + 'static 
 }
 
 /// Closed in space.
-pub(crate) fn space_curve(random: &mut Random) -> impl Fn(f64) -> Vector3<f64> + 'static {
+pub(crate) fn space_curve(random: &mut Random) -> impl Fn(f64) -> Vector3<f64> + use<> {
     let h: [Harmonics; 3] = std::array::from_fn(|_| Harmonics::random(random));
     move |t| Vector3::from_fn(|i, _| h[i].at(t))
 }
 
 /// Closed in the plane, and as a rule crossing itself.
-pub(crate) fn crossing_curve(random: &mut Random) -> impl Fn(f64) -> Vector2<f64> + 'static {
+pub(crate) fn crossing_curve(random: &mut Random) -> impl Fn(f64) -> Vector2<f64> + use<> {
     let h: [Harmonics; 2] = std::array::from_fn(|_| Harmonics::random(random));
     move |t| Vector2::from_fn(|i, _| h[i].at(t))
 }
 
 /// Closed and simple in the plane: a circle whose radius has three harmonics on a logarithmic scale.
-pub(crate) fn plane_curve(random: &mut Random) -> impl Fn(f64) -> Vector2<f64> + 'static {
+pub(crate) fn plane_curve(random: &mut Random) -> impl Fn(f64) -> Vector2<f64> + use<> {
     let h = Harmonics::random(random);
     move |t| Vector2::new(t.cos(), t.sin()) * (0.5 * h.at(t)).exp()
 }
 
 /// Closed and simple on the unit sphere: the equator with three harmonics in its latitude.
-pub(crate) fn sphere_curve(random: &mut Random) -> impl Fn(f64) -> Vector3<f64> + 'static {
+pub(crate) fn sphere_curve(random: &mut Random) -> impl Fn(f64) -> Vector3<f64> + use<> {
     let h = Harmonics::random(random);
     move |t| Vector3::new(t.cos(), t.sin(), 0.6 * h.at(t)).normalize()
 }
