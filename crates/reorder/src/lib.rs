@@ -81,12 +81,17 @@
 //! longest, and the loop meets every condition of a certified order.
 
 mod certificate;
+mod components;
+mod crust;
 mod curve;
 mod doubts;
+mod drawing;
 mod duplicates;
 mod error;
 mod independence;
+mod near_pairs;
 mod nearest;
+mod nn_crust;
 mod order;
 mod ordering;
 mod poses;
@@ -98,9 +103,15 @@ mod topology;
 mod walk;
 
 pub use certificate::{Certificate, Condition};
+pub use components::{APART, Component, Components, FEWEST_OF_A_CURVE, Split, order_components, split};
+pub use crust::crust;
+pub use drawing::{Drawing, NoCurve, Strand};
 pub use error::OrderError;
+pub use nearest::nearest_chain;
+pub use nn_crust::nn_crust;
 pub use order::order;
 pub use ordering::{Doubt, Method, Options, Ordering, Topology, TopologyChoice, Verdict};
 pub use petgraph;
 pub use poses::order_poses;
+pub use spade;
 pub use spanning_tree::{Tree, minimum_spanning_tree};

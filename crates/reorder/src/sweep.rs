@@ -3,7 +3,7 @@
 use se3_geom::Manifold;
 
 use crate::curve::Curve;
-use crate::nearest::{PairSearch, Runs};
+use crate::near_pairs::{PairSearch, Runs};
 
 /// The local sampling parameter above which a point is doubted.
 ///

@@ -5,7 +5,7 @@
 
 mod support;
 
-use reorder::{Options, Ordering, Topology, Verdict, order};
+use reorder::{Options, Ordering, Topology, Verdict, nearest_chain, nn_crust, order};
 use se3_geom::{Manifold, R2, R3, Se3, Sphere};
 use support::harmonics::*;
 use support::{Random, neighbours, shuffled, unshuffled};
@@ -26,6 +26,8 @@ struct Trial {
     epsilon: f64,
     exact: bool,
     topology_right: bool,
+    /// NN-CRUST, and the nearest-neighbour chain from any point.
+    others_exact: [bool; 2],
     found: Ordering,
 }
 
@@ -33,12 +35,14 @@ struct Trial {
 fn tried<M: Manifold>(manifold: &M, random: &mut Random, samples: &[M::Point], closed: bool, epsilon: f64) -> Trial {
     let n = samples.len();
     let rows = random.permutation(n);
-    let found: Ordering = order(manifold, &shuffled(samples, &rows), &Options::default()).unwrap();
+    let mixed = shuffled(samples, &rows);
+    let found: Ordering = order(manifold, &mixed, &Options::default()).unwrap();
     let topology_right = (found.topology == Topology::Closed) == closed;
     let truth = neighbours(&(0..n).collect::<Vec<_>>(), closed);
     // A closed curve reported as open, in the right order, lacks its closing pair and nothing else.
     let recovered = neighbours(&unshuffled(&found.order, &rows), closed);
-    Trial { kind: String::new(), n, epsilon, exact: recovered == truth, topology_right, found }
+    let exact = recovered == truth;
+    Trial { kind: String::new(), n, epsilon, exact, topology_right, others_exact: [false; 2], found }
 }
 
 fn share<'a>(trials: &[&'a Trial], which: impl Fn(&&&'a Trial) -> bool) -> f64 {
@@ -56,18 +60,27 @@ fn success_by_density() {
         let n = curve.count_for(wanted, Spacing::Iid);
         if n <= MOST_POINTS {
             let samples = curve.sample(&mut random, n, Spacing::Iid);
-            trials.push(tried(&curve.manifold, &mut random, &samples, true, curve.epsilon(&samples)));
+            let trial = tried(&curve.manifold, &mut random, &samples, true, curve.epsilon(&samples));
+            let truth = neighbours(&(0..n).collect::<Vec<_>>(), true);
+            let drawn: Vec<_> = nn_crust(&curve.manifold, &samples).edges().iter().map(|&[a, b]| (a, b)).collect();
+            let chain = nearest_chain(&curve.manifold, &samples, random.below(n));
+            trials.push(Trial { others_exact: [drawn == truth, neighbours(&chain, true) == truth], ..trial });
         }
     }
-    println!("{:>12} {:>6} {:>8} {:>10} {:>10}", "epsilon", "cases", "MST", "certified", "plausible");
+    println!(
+        "{:>12} {:>6} {:>8} {:>8} {:>8} {:>10} {:>10}",
+        "epsilon", "cases", "MST", "NN-CRUST", "chain", "certified", "plausible"
+    );
     let mut below = 0.0;
     for class in CLASSES {
         let of_class: Vec<_> = trials.iter().filter(|t| (below..class).contains(&t.epsilon)).collect();
         println!(
-            "{:>12} {:>6} {:>8.4} {:>10.4} {:>10.4}",
+            "{:>12} {:>6} {:>8.4} {:>8.4} {:>8.4} {:>10.4} {:>10.4}",
             format!("{below}-{class}"),
             of_class.len(),
             share(&of_class, |t| t.exact),
+            share(&of_class, |t| t.others_exact[0]),
+            share(&of_class, |t| t.others_exact[1]),
             share(&of_class, |t| t.found.verdict == Verdict::Certified),
             share(&of_class, |t| t.found.verdict == Verdict::Plausible),
         );
