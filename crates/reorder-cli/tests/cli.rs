@@ -54,7 +54,7 @@ fn order_prints_the_whole_object_for_a_recorded_bag() {
         assert_eq!(object["n"], order.len());
         assert_eq!(object["topology"], "open");
         assert_eq!(object["method"], "mst");
-        assert_eq!(object["verdict"], "plausible", "nothing is certified yet, and this is not ambiguous");
+        assert_ne!(object["verdict"], "ambiguous", "{}", object["doubts"]);
         assert_eq!(object["metres_per_radian"], 0.1);
         assert_eq!(object["weight_stable"], true);
         for key in ["components", "duplicates", "doubts"] {

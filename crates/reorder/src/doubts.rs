@@ -51,14 +51,22 @@ pub(crate) fn of_tree(tree: &Tree) -> Vec<Doubt> {
 }
 
 /// Every doubt about an order that follows the tree; `repeated` tells which rows stand for several equal points.
-pub(crate) fn of_curve<M: Manifold>(curve: &Curve<M>, gaps: &[f64], found: &Sweep, repeated: &[bool]) -> Vec<Doubt> {
+/// Long, short and alternating gaps are no doubts where they are `explained`: dense samples that were thrown independently have them.
+pub(crate) fn of_curve<M: Manifold>(
+    curve: &Curve<M>,
+    gaps: &[f64],
+    found: &Sweep,
+    repeated: &[bool],
+    explained: bool,
+) -> Vec<Doubt> {
     let few = (3..FEWEST_POINTS).contains(&curve.len()).then(|| Doubt {
         at: curve.rows_at(0, curve.len() - 1),
         why: format!("{} distinct points are too few to tell one curve from another", curve.len()),
     });
-    let edges = (0..gaps.len()).flat_map(|k| of_gap(curve, gaps, repeated, k));
+    let interleaving = if explained { None } else { of_interleaving(curve, gaps) };
+    let edges = (0..gaps.len()).flat_map(|k| of_gap(curve, gaps, repeated, k, explained));
     let vertices = (0..curve.len()).flat_map(|k| of_vertex(curve, found, k));
-    few.into_iter().chain(of_interleaving(curve, gaps)).chain(edges).chain(vertices).collect()
+    few.into_iter().chain(interleaving).chain(edges).chain(vertices).collect()
 }
 
 /// A doubt at the middle of the first stretch that looks like two passes of a curve whose points fall between each other: gaps
@@ -86,14 +94,14 @@ fn mean_change<'a>(pairs: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
     f64::sqrt(sum / count)
 }
 
-fn of_gap<M: Manifold>(curve: &Curve<M>, gaps: &[f64], repeated: &[bool], k: usize) -> Vec<Doubt> {
+fn of_gap<M: Manifold>(curve: &Curve<M>, gaps: &[f64], repeated: &[bool], k: usize, explained: bool) -> Vec<Doubt> {
     let at = curve.rows_at(k, (k + 1) % curve.len());
     let median = median_around(gaps, k, curve.closed).unwrap_or(gaps[k]);
     let mut reasons = Vec::new();
-    if gaps[k] > LONG_GAP * median {
+    if !explained && gaps[k] > LONG_GAP * median {
         reasons.push(format!("the gap is {:.1} times the median of the gaps around it", gaps[k] / median));
     }
-    if gaps[k] * SHORT_GAP < median {
+    if !explained && gaps[k] * SHORT_GAP < median {
         let times = median / gaps[k];
         reasons
             .push(format!("the median of the gaps around is {times:.1} times this gap: the curve may come back here"));

@@ -10,7 +10,7 @@ use crate::spanning_tree::Tree;
 /// Two points nearer than this share of the longest tree edge are one point. Distances come from differences of coordinates
 /// that are rounded to ε/2 each, and go through a square root or an arcsine: a few ε of the data's extent is what equal points
 /// can differ by, and the longest tree edge is never more than that extent.
-const ROUNDING_SHARE: f64 = 4.0 * f64::EPSILON;
+pub(crate) const ROUNDING_SHARE: f64 = 4.0 * f64::EPSILON;
 
 /// Distinct points: `groups[k]` are the rows of node k of `tree`, ascending, and `groups[k][0]` stands for them.
 pub(crate) struct Distinct {

@@ -2,10 +2,12 @@
 
 use se3_geom::Manifold;
 
+use crate::certificate::Certificate;
 use crate::curve::Curve;
 use crate::doubts;
 use crate::error::OrderError;
-use crate::ordering::{Certificate, Doubt, Method, Options, Ordering, Topology, Verdict};
+use crate::independence::look_independent;
+use crate::ordering::{Doubt, Method, Options, Ordering, Topology, Verdict};
 use crate::recovery::{Recovery, recover};
 use crate::sweep::sweep;
 use crate::topology::beyond_ends;
@@ -28,7 +30,7 @@ pub fn order<M: Manifold>(manifold: &M, points: &[M::Point], options: &Options) 
 }
 
 pub(crate) fn judge<M: Manifold>(manifold: &M, points: &[M::Point], recovery: Recovery) -> Ordering {
-    let (certificate, doubts) = examine(manifold, points, &recovery);
+    let (certificate, doubts, verdict) = examine(manifold, points, &recovery);
     let groups = recovery.distinct.groups;
     let mut group_of = vec![0; points.len()];
     for (k, group) in groups.iter().enumerate() {
@@ -41,7 +43,7 @@ pub(crate) fn judge<M: Manifold>(manifold: &M, points: &[M::Point], recovery: Re
         order,
         topology: if recovery.closed { Topology::Closed } else { Topology::Open },
         method: Method::Mst,
-        verdict: if doubts.is_empty() { Verdict::Plausible } else { Verdict::Ambiguous },
+        verdict,
         weight_stable: None,
         metres_per_radian: None,
         duplicates: groups.into_iter().filter(|group| group.len() > 1).collect(),
@@ -50,37 +52,32 @@ pub(crate) fn judge<M: Manifold>(manifold: &M, points: &[M::Point], recovery: Re
     }
 }
 
-fn examine<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recovery) -> (Certificate, Vec<Doubt>) {
+fn examine<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recovery) -> (Certificate, Vec<Doubt>, Verdict) {
     let tree = &recovery.distinct.tree;
     let mut doubts = doubts::of_tree(tree);
     if !doubts.is_empty() {
         let longest = tree.edge_weights().copied().fold(0.0, f64::max);
-        return (certificate(manifold, longest, f64::INFINITY), doubts);
+        return (Certificate::of_no_curve(manifold, longest), doubts, Verdict::Ambiguous);
     }
     let curve = Curve::new(manifold, points, &recovery.rows, recovery.closed);
     let gaps = curve.gaps();
     let found = sweep(&curve, beyond_ends(&gaps));
+    let certificate = Certificate::of_curve(&curve, &gaps, &found);
+    let certified = certificate.conditions(recovery.closed).iter().all(|condition| condition.holds);
     let mut repeated = vec![false; points.len()];
     for group in &recovery.distinct.groups {
         repeated[group[0]] = group.len() > 1;
     }
-    doubts.extend(doubts::of_curve(&curve, &gaps, &found, &repeated));
+    let explained = certified && look_independent(&gaps);
+    doubts.extend(doubts::of_curve(&curve, &gaps, &found, &repeated, explained));
     if recovery.unsure_of_ends {
         let why = "the ends come so near to each other that the curve may be closed".to_owned();
         doubts.push(Doubt { at: curve.rows_at(0, curve.len() - 1), why });
     }
-    let max_gap = gaps.iter().copied().fold(0.0, f64::max);
-    (certificate(manifold, max_gap, found.reach), doubts)
-}
-
-fn certificate<M: Manifold>(manifold: &M, max_gap: f64, reach: f64) -> Certificate {
-    let finite = |x: f64| x.is_finite().then_some(x);
-    let injectivity_radius = finite(manifold.injectivity_radius());
-    Certificate {
-        max_gap,
-        reach: finite(reach),
-        epsilon: finite(reach).map(|reach| max_gap / (2.0 * reach)),
-        injectivity_radius,
-        margin: injectivity_radius.map(|radius| radius - max_gap),
-    }
+    let verdict = match (doubts.is_empty(), certified) {
+        (false, _) => Verdict::Ambiguous,
+        (true, false) => Verdict::Plausible,
+        (true, true) => Verdict::Certified,
+    };
+    (certificate, doubts, verdict)
 }

@@ -3,6 +3,7 @@
 use petgraph::graph::NodeIndex;
 use se3_geom::Manifold;
 
+use crate::certificate::closes;
 use crate::curve::Curve;
 use crate::duplicates::{Distinct, merge};
 use crate::error::OrderError;
@@ -28,9 +29,11 @@ pub(crate) fn recover<M: Manifold>(
     let distinct = distinct_points(manifold, points, options)?;
     let tree = &distinct.tree;
     let mut rows = rows_along(tree, far_end(tree));
-    let ends = closing(&Curve::new(manifold, points, &rows, false));
+    let path = Curve::new(manifold, points, &rows, false);
+    let ends = closing(&path);
+    let branches = tree.node_indices().any(|node| tree.neighbors(node).count() > 2);
     let closed = match options.topology {
-        TopologyChoice::Auto => ends == Closing::Meets,
+        TopologyChoice::Auto => ends == Closing::Meets || (!branches && closes(&path)),
         TopologyChoice::Open => false,
         TopologyChoice::Closed => true,
     };
@@ -42,7 +45,7 @@ pub(crate) fn recover<M: Manifold>(
         None if rows[0] > rows[rows.len() - 1] => rows = rows_along(tree, distinct.node_of(rows[rows.len() - 1])),
         None => {}
     }
-    let unsure_of_ends = options.topology == TopologyChoice::Auto && ends == Closing::Near;
+    let unsure_of_ends = options.topology == TopologyChoice::Auto && ends == Closing::Near && !closed;
     Ok(Recovery { distinct, rows, closed, unsure_of_ends })
 }
 

@@ -36,14 +36,14 @@ fn verdicts_rank() {
 #[test]
 fn a_gap_more_than_three_times_its_surroundings_is_doubted() {
     let with_gap = |gap: f64| in_plane(&line((0..20).map(|k| f64::from(k) + if k > 9 { gap - 1.0 } else { 0.0 })));
-    assert_eq!(with_gap(2.9).verdict, Verdict::Plausible);
+    assert_ne!(with_gap(2.9).verdict, Verdict::Ambiguous);
     assert!(doubted(&with_gap(3.1), [9, 10], "3.1 times the median"), "{}", reasons(&with_gap(3.1)));
 }
 
 #[test]
 fn a_gap_more_than_eight_times_shorter_than_its_surroundings_is_doubted() {
     let with_gap = |gap: f64| in_plane(&line((0..20).map(|k| f64::from(k) + if k > 9 { gap - 1.0 } else { 0.0 })));
-    assert_eq!(with_gap(0.13).verdict, Verdict::Plausible, "{}", reasons(&with_gap(0.13)));
+    assert_ne!(with_gap(0.13).verdict, Verdict::Ambiguous, "{}", reasons(&with_gap(0.13)));
     assert!(doubted(&with_gap(0.12), [9, 10], "the curve may come back"));
 }
 
@@ -78,7 +78,7 @@ fn a_sharp_turn_is_doubted() {
         let straight = (0..=10).map(|k| (f64::from(k), 0.0));
         in_plane(&straight.chain((1..=10).map(|k| (10.0 + c * f64::from(k), s * f64::from(k)))).collect::<Vec<_>>())
     };
-    assert_eq!(corner(60.0).verdict, Verdict::Plausible, "{}", reasons(&corner(60.0)));
+    assert_ne!(corner(60.0).verdict, Verdict::Ambiguous, "{}", reasons(&corner(60.0)));
     assert!(doubted(&corner(100.0), [9, 11], "turns by 100 degrees"), "{}", reasons(&corner(100.0)));
 }
 
@@ -94,7 +94,7 @@ fn strands_nearer_than_the_gaps_allow_are_doubted() {
         in_plane(&out.chain(arc).chain(back).collect::<Vec<_>>())
     };
     // Across, the nearest sample is shifted by 0.4: ε = w/(w² + 0.16), 0.44 for the wide one and 0.80 for the narrow one.
-    assert_eq!(hairpin(2.2).verdict, Verdict::Plausible, "{}", reasons(&hairpin(2.2)));
+    assert_ne!(hairpin(2.2).verdict, Verdict::Ambiguous, "{}", reasons(&hairpin(2.2)));
     assert!(reasons(&hairpin(1.1)).contains("epsilon is 0.80"), "{}", reasons(&hairpin(1.1)));
 }
 
@@ -104,12 +104,12 @@ fn ends_that_come_near_leave_the_topology_in_doubt() {
         let step = (TAU - missing * 0.1) / 56.0;
         in_plane(&(0..57).map(|k| (step * f64::from(k)).sin_cos()).collect::<Vec<_>>())
     };
-    assert_eq!((ring(1.0).topology, ring(1.0).verdict), (Topology::Closed, Verdict::Plausible));
+    assert_eq!((ring(1.0).topology, ring(1.0).verdict > Verdict::Ambiguous), (Topology::Closed, true));
     assert_eq!(ring(2.5).topology, Topology::Open);
     assert!(doubted(&ring(2.5), [0, 56], "may be closed"), "{}", reasons(&ring(2.5)));
     assert_eq!(
-        (ring(4.0).topology, ring(4.0).verdict),
-        (Topology::Open, Verdict::Plausible),
+        (ring(4.0).topology, ring(4.0).verdict > Verdict::Ambiguous),
+        (Topology::Open, true),
         "{}",
         reasons(&ring(4.0))
     );
@@ -121,7 +121,7 @@ fn a_stretch_of_points_that_all_come_twice_is_doubted() {
     let found = in_plane(&forth_and_back);
     assert!(doubted(&found, [5, 6], "more than once"), "{}", reasons(&found));
     let dwell = line((0..10).map(f64::from).chain([9.0, 9.0, 9.0]));
-    assert_eq!(in_plane(&dwell).verdict, Verdict::Plausible);
+    assert_ne!(in_plane(&dwell).verdict, Verdict::Ambiguous);
 }
 
 #[test]
@@ -190,7 +190,12 @@ fn an_order_that_hangs_on_the_weight_is_ambiguous() {
     let along_turn = two_passes(|along, aside| at(aside, along));
     for (poses, safe, risky, change) in [(along_line, 0.2, 0.05, "with half"), (along_turn, 5.0, 20.0, "with twice")] {
         let found = order_poses(&poses, safe, &Options::default()).unwrap();
-        assert_eq!((found.weight_stable, found.verdict), (Some(true), Verdict::Plausible), "{}", reasons(&found));
+        assert_eq!(
+            (found.weight_stable, found.verdict > Verdict::Ambiguous),
+            (Some(true), true),
+            "{}",
+            reasons(&found)
+        );
         assert_eq!(found.order, (0..poses.len()).collect::<Vec<_>>());
         let found = order_poses(&poses, risky, &Options::default()).unwrap();
         assert_eq!((found.weight_stable, found.verdict), (Some(false), Verdict::Ambiguous));
@@ -217,7 +222,7 @@ fn an_end_that_points_at_another_stretch_is_doubted() {
         in_plane(&points)
     };
     let (near, far) = (six(1.6), six(2.6));
-    assert_eq!(far.verdict, Verdict::Plausible, "{}", reasons(&far));
+    assert_ne!(far.verdict, Verdict::Ambiguous, "{}", reasons(&far));
     assert_eq!(near.order, (0..near.n).collect::<Vec<_>>());
     assert!(near.doubts.iter().all(|d| d.why.contains("as near")), "{}", reasons(&near));
     assert_eq!((near.verdict, near.doubts[0].at[0]), (Verdict::Ambiguous, near.n - 1));
@@ -244,7 +249,7 @@ fn no_wrong_order_of_uneven_clean_samples_is_believed() {
         let recovered = neighbours(&unshuffled(&found.order, &rows), found.topology == Topology::Closed);
         let right = recovered.iter().all(|pair| truth.contains(pair)) && recovered.len() + 1 >= n;
         wrong += usize::from(!right);
-        believed += usize::from(found.verdict == Verdict::Plausible);
+        believed += usize::from(found.verdict > Verdict::Ambiguous);
         assert!(right || found.verdict == Verdict::Ambiguous, "trial {trial}");
     }
     assert!(wrong > 100, "only {wrong} hard cases");
@@ -266,7 +271,24 @@ fn json_has_the_fixed_shape() {
     );
     let mut keys: Vec<_> = certificate.as_object().unwrap().keys().cloned().collect();
     keys.sort_unstable();
-    assert_eq!(keys, ["epsilon", "injectivity_radius", "margin", "max_gap", "reach"]);
+    let expected = [
+        "curvature_radius",
+        "distinct",
+        "edge_epsilon",
+        "epsilon",
+        "injectivity_radius",
+        "margin",
+        "max_gap",
+        "opening",
+        "reach",
+        "required_reach",
+        "roughness",
+        "turn_rad",
+        "usable_reach",
+        "weakest",
+        "zigzag",
+    ];
+    assert_eq!(keys, expected);
     assert_eq!(certificate["injectivity_radius"], 0.5 * std::f64::consts::PI);
 }
 
@@ -285,7 +307,7 @@ fn a_stroke_drawn_back_between_its_own_points_is_doubted() {
     }
     // Jitter of a tenth of a step makes gaps uneven too, but in no such pattern.
     let jittered = line((0..60).map(|k| f64::from(k) + 0.1 * (f64::from(k * k) * 1.7).sin()));
-    assert_eq!(in_plane(&jittered).verdict, Verdict::Plausible);
+    assert_ne!(in_plane(&jittered).verdict, Verdict::Ambiguous);
 }
 
 /// An even arc is open as long as its ends are visibly farther apart than its points, and closed when they are not.
@@ -302,13 +324,18 @@ fn an_even_arc_with_a_small_opening_is_not_called_closed() {
         }
         let closed = in_plane(&circle(1.05));
         assert_eq!(
-            (closed.topology, closed.verdict),
-            (Topology::Closed, Verdict::Plausible),
+            (closed.topology, closed.verdict > Verdict::Ambiguous),
+            (Topology::Closed, true),
             "{n}: {}",
             reasons(&closed)
         );
         let open = in_plane(&circle(6.0));
-        assert_eq!((open.topology, open.verdict), (Topology::Open, Verdict::Plausible), "{n}: {}", reasons(&open));
+        assert_eq!(
+            (open.topology, open.verdict > Verdict::Ambiguous),
+            (Topology::Open, true),
+            "{n}: {}",
+            reasons(&open)
+        );
     }
 }
 
@@ -319,6 +346,6 @@ fn a_handful_of_points_is_no_evidence() {
         assert_eq!(found.verdict, Verdict::Ambiguous);
         assert!(reasons(&found).contains("too few to tell"), "{}", reasons(&found));
     }
-    assert_eq!(in_plane(&line((0..2).map(f64::from))).verdict, Verdict::Plausible, "two points have one order");
-    assert_eq!(in_plane(&line((0..8).map(f64::from))).verdict, Verdict::Plausible);
+    assert_ne!(in_plane(&line((0..2).map(f64::from))).verdict, Verdict::Ambiguous, "two points have one order");
+    assert_ne!(in_plane(&line((0..8).map(f64::from))).verdict, Verdict::Ambiguous);
 }

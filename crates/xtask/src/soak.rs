@@ -12,6 +12,8 @@ use crate::failure::{Failure, Outcome};
 pub(crate) enum Soak {
     /// Random curves, shuffled, planned and judged
     Plans,
+    /// Random smooth curves, sampled, shuffled and ordered: success by density, wrong orders by verdict
+    Orders,
     /// Random coordinates, ordered: the number is how many seconds
     FuzzOrders,
     /// Random bytes, read as a table: the number is how many seconds
@@ -21,6 +23,7 @@ pub(crate) enum Soak {
 pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
     match name {
         Soak::Plans => run_test(layout, "planner", "random_plans", amount),
+        Soak::Orders => run_test(layout, "reorder", "random_orders", amount),
         Soak::FuzzOrders => fuzz(layout, "orders", amount),
         Soak::FuzzTables => fuzz(layout, "tables", amount),
     }
@@ -28,7 +31,7 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
 
 fn run_test(layout: &Layout, package: &str, test: &str, cases: u32) -> Outcome {
     let mut cargo = layout.cargo();
-    cargo.args(["test", "--release", "--package", package, "--test", test, "--", "--nocapture"]);
+    cargo.args(["test", "--release", "--package", package, "--test", test, "--", "--nocapture", "--test-threads=1"]);
     let status = cargo.env("REORDER_SOAK_CASES", cases.to_string()).status().map_err(Failure::io("run", "cargo"))?;
     if status.success() { Ok(()) } else { Err(Failure::Command { what: format!("soak {test}"), status }) }
 }
