@@ -18,6 +18,9 @@ mod figures_7_5_to_7_7;
 #[allow(dead_code)]
 #[path = "../examples/figures_7_8_to_7_9.rs"]
 mod figures_7_8_to_7_9;
+#[allow(dead_code)]
+#[path = "../examples/success_by_epsilon.rs"]
+mod success_by_epsilon;
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -110,4 +113,21 @@ fn sparse_samples_are_wrong_and_doubted_dense_ones_right() {
     }
     let (lines, dots) = drawn(|path| figures_2_1_2_2_5_4::draw(&numbers, path));
     assert_eq!((lines, dots), (2 * 4, 8 + 80 + 12 + 240));
+}
+
+/// Dense samples (ε < 1) come out right, which is the theorem; sparse ones less often, and the chain less often still.
+#[test]
+fn success_falls_with_epsilon() {
+    let numbers = success_by_epsilon::compute(60).unwrap();
+    let all = |k: usize| {
+        let right: f64 = (0..8).map(|class| numbers.shares[class][k] * numbers.cases[class] as f64).sum();
+        right / numbers.cases.iter().sum::<usize>() as f64
+    };
+    assert!(numbers.cases.iter().sum::<usize>() >= 50);
+    // Classes 0 to 2 end at 0.25·32^(3/8) = 0.92.
+    assert!((0..3).all(|class| numbers.cases[class] == 0 || numbers.shares[class][0] == 1.0), "{:?}", numbers.shares);
+    assert!(all(0) > all(2), "{} {}", all(0), all(2));
+    assert_eq!(numbers.silently_wrong, 0);
+    let (lines, _) = drawn(|path| success_by_epsilon::draw(&numbers, path));
+    assert_eq!(lines, 8, "a line a method, and its entry in the legend");
 }
