@@ -6,7 +6,6 @@
 #[allow(dead_code)]
 #[path = "../../se3-geom/examples/drawing/mod.rs"]
 mod drawing;
-#[allow(dead_code)]
 #[path = "../tests/support/mod.rs"]
 mod support;
 
