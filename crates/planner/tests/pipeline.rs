@@ -235,7 +235,9 @@ fn refusals_name_the_input() {
     assert!(!undecided.is_bad_input() && undecided.ordering().is_some());
 
     let certain = Config { minimum_verdict: Verdict::Certified, ..Config::default() };
-    assert!(matches!(said(&certain, &base), Refusal::Verdict { verdict: Verdict::Plausible, .. }));
+    // Eleven poses are too few to certify anything.
+    let few = Request { poses: base.poses.iter().take(11).copied().collect(), ..base.clone() };
+    assert!(matches!(said(&certain, &few), Refusal::Verdict { verdict: Verdict::Plausible | Verdict::Ambiguous, .. }));
 }
 
 #[test]

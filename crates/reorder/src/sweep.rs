@@ -16,6 +16,9 @@ const EXACT_REACH: usize = 2000;
 /// How many steps of a thinned curve are searched around each of its points.
 const THINNED_STEPS: f64 = 4.0;
 
+/// There, points that are no more than this many steps apart show the curvature, which neighbours show too.
+const ALONG_STEPS: usize = 8;
+
 /// What the pass finds.
 pub(crate) struct Sweep {
     /// Smallest radius of a ball that touches the tangent at one point and passes through another; infinite where all points
@@ -47,7 +50,8 @@ struct Vertex<T> {
 /// The ball at p through q has radius ‖v‖²/(2‖v⊥‖) ≥ ‖v‖/2, v = log_p(q): only near pairs need their logarithm taken. Rivals and sparse
 /// points are found exactly. So is the reach of up to 2000 points; beyond that, balls that reach farther than four gaps are
 /// measured on thinned curves, every second point, every fourth, and so on: where two strands are w apart, the nearest kept point across
-/// is at most half a step ≤ w/4 beside the nearest point, so that (w² + w²/16)/2w overstates the reach by 1/16 at most.
+/// is at most half a step ≤ w/4 beside the nearest point, so that (w² + w²/16)/2w overstates the reach by 1/16 at most, and a certified
+/// order allows for a factor of 2.
 pub(crate) fn sweep<M: Manifold>(curve: &Curve<M>, beyond_ends: [f64; 2]) -> Sweep {
     let n = curve.len();
     let vertices: Vec<Vertex<M::Tangent>> = (0..n).map(|k| vertex(curve, k, beyond_ends)).collect();
@@ -87,7 +91,7 @@ fn thinned_reach<M: Manifold>(curve: &Curve<M>, vertices: &[Vertex<M::Tangent>],
         let gaps: Vec<f64> = kept.windows(2).map(|w| curve.distance(w[0], w[1])).collect();
         let around = |k: usize| gaps[k.saturating_sub(1)..(k + 1).min(gaps.len())].iter().copied().fold(0.0, f64::max);
         let wanted: Vec<f64> = (0..kept.len()).map(|k| THINNED_STEPS * around(k)).collect();
-        let mut search = SmallestBall { curve, vertices, reach, coarse };
+        let mut search = SmallestBall { curve, vertices, reach, step, coarse };
         Runs::new(curve, &kept, &wanted).join(&mut search);
         reach = search.reach;
         if coarse {
@@ -111,13 +115,14 @@ impl<M: Manifold> PairSearch for Disputes<'_, '_, M> {
         if self.exact { 2.0 * self.found.reach } else { 0.0 }
     }
     fn visit(&mut self, i: usize, j: usize, distance: f64) {
+        let across = self.exact || j - i > ALONG_STEPS;
         let Self { curve, vertices, found, .. } = self;
         if curve.are_neighbours(i, j) {
             return;
         }
         for (at, other) in [(i, j), (j, i)] {
             let vertex = &vertices[at];
-            if distance < 2.0 * found.reach || LOCAL_EPSILON * distance < vertex.farther_gap {
+            if (across && distance < 2.0 * found.reach) || LOCAL_EPSILON * distance < vertex.farther_gap {
                 found.measure_ball(curve, vertex, at, other);
             }
             let near = distance < vertex.farther_gap && distance < self.rival_distances[at];
@@ -134,6 +139,7 @@ struct SmallestBall<'a, 'b, M: Manifold> {
     curve: &'a Curve<'b, M>,
     vertices: &'a [Vertex<M::Tangent>],
     reach: f64,
+    step: usize,
     coarse: bool,
 }
 
@@ -142,7 +148,7 @@ impl<M: Manifold> PairSearch for SmallestBall<'_, '_, M> {
         if self.coarse { 2.0 * self.reach } else { 0.0 }
     }
     fn visit(&mut self, i: usize, j: usize, distance: f64) {
-        if distance < 2.0 * self.reach {
+        if (self.coarse || j - i > ALONG_STEPS * self.step) && distance < 2.0 * self.reach {
             for (at, other) in [(i, j), (j, i)] {
                 let radius = self.vertices[at].tangent.and_then(|tangent| ball_radius(self.curve, tangent, at, other));
                 self.reach = self.reach.min(radius.unwrap_or(f64::INFINITY));
