@@ -11,6 +11,7 @@ use super::edge::Edge;
 use super::foreign::{Components, search_foreign};
 use super::kd_tree::{Below, KdTree, LANES};
 use super::nearest::nearest_neighbours;
+use super::traversal::Stack;
 
 /// A node whose slots are of several components.
 pub(super) const MIXED: u32 = u32::MAX;
@@ -94,10 +95,10 @@ impl Forest {
             state.advance(candidates, &components, leaf);
         });
         let leaves = candidates.par_chunks_mut(LANES).zip(&mut self.leaves).enumerate();
-        leaves.filter(|(leaf, _)| busy(*leaf)).for_each(|(leaf, (candidates, state))| {
+        leaves.filter(|(leaf, _)| busy(*leaf)).for_each_init(Stack::new, |stack, (leaf, (candidates, state))| {
             let component = components.of_node[tree.node_of_leaf[leaf] as usize];
             if component == MIXED || state.bound <= components.shortest(component) {
-                search_foreign(tree, chords, &components, leaf, candidates);
+                search_foreign(tree, chords, &components, leaf, candidates, stack);
                 state.summarise(candidates, &components, leaf);
             }
         });
