@@ -15,6 +15,7 @@ pub(crate) const ROUNDING_SHARE: f64 = 4.0 * f64::EPSILON;
 /// Distinct points: `groups[k]` are the rows of node k of `tree`, ascending, and `groups[k][0]` stands for them.
 pub(crate) struct Distinct {
     pub(crate) groups: Vec<Vec<usize>>,
+    group_of_row: Vec<usize>,
     pub(crate) tree: Tree,
 }
 
@@ -28,14 +29,16 @@ pub(crate) fn merge<M: Manifold>(manifold: &M, points: &[M::Point], tree: &Tree)
     }
 
     let mut group_of_root = vec![usize::MAX; points.len()];
+    let mut group_of_row = Vec::with_capacity(points.len());
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for row in 0..points.len() {
-        let root = merged.find(row);
+        let root = merged.find_mut(row);
         if group_of_root[root] == usize::MAX {
             group_of_root[root] = groups.len();
             groups.push(Vec::new());
         }
         groups[group_of_root[root]].push(row);
+        group_of_row.push(group_of_root[root]);
     }
 
     let mut contracted = Tree::with_capacity(groups.len(), groups.len().saturating_sub(1));
@@ -43,16 +46,16 @@ pub(crate) fn merge<M: Manifold>(manifold: &M, points: &[M::Point], tree: &Tree)
         contracted.add_node(group[0]);
     }
     for edge in tree.edge_references().filter(|e| !is_rounding(*e.weight())) {
-        let [a, b] = [edge.source(), edge.target()].map(|v| group_of_root[merged.find(v.index())]);
+        let [a, b] = [edge.source(), edge.target()].map(|v| group_of_row[v.index()]);
         let length = manifold.distance(&points[groups[a][0]], &points[groups[b][0]]);
         contracted.add_edge(NodeIndex::new(a), NodeIndex::new(b), length);
     }
-    Distinct { groups, tree: contracted }
+    Distinct { groups, group_of_row, tree: contracted }
 }
 
 impl Distinct {
     /// The node of a row.
     pub(crate) fn node_of(&self, row: usize) -> NodeIndex {
-        NodeIndex::new(self.groups.iter().position(|group| group.contains(&row)).unwrap_or(0))
+        NodeIndex::new(self.group_of_row[row])
     }
 }

@@ -11,6 +11,7 @@ use super::edge::Edge;
 use super::foreign::{Components, search_foreign};
 use super::kd_tree::{Below, KdTree, LANES};
 use super::nearest::nearest_neighbours;
+use super::traversal::Stack;
 
 /// A node whose slots are of several components.
 pub(super) const MIXED: u32 = u32::MAX;
@@ -30,13 +31,52 @@ struct Forest {
     of_node: Vec<u32>,
     /// Slots in each component.
     sizes: Vec<u32>,
+    leaves: Vec<LeafState>,
+}
+
+/// What need not be asked of the sixteen slots again in every round.
+#[derive(Clone)]
+struct LeafState {
+    /// Some slot may have candidates left.
+    stocked: bool,
+    /// Some slot may have the shortest edge of its component in this round.
+    hopeful: bool,
+    /// To no slot that has run out of candidates a foreign one is nearer.
+    bound: f64,
+}
+
+impl LeafState {
+    /// Passes over the candidates that have joined the component, and tells the component of the first that has not.
+    fn advance(&mut self, candidates: &mut [Candidates], components: &Components, leaf: usize) {
+        self.hopeful = false;
+        if self.stocked {
+            self.summarise(candidates, components, leaf);
+        }
+    }
+
+    fn summarise(&mut self, candidates: &mut [Candidates], components: &Components, leaf: usize) {
+        *self = Self { stocked: false, hopeful: self.hopeful, bound: f64::INFINITY };
+        for (candidates, &own) in candidates.iter_mut().zip(&components.of_slot[leaf * LANES..]) {
+            match candidates.foreign(own, components.of_slot) {
+                Some((squared, _)) => {
+                    self.stocked = true;
+                    if own != components.largest {
+                        components.shorten(own, squared);
+                        self.hopeful |= squared <= components.shortest(own);
+                    }
+                }
+                None => self.bound = self.bound.min(candidates.bound),
+            }
+        }
+    }
 }
 
 impl Forest {
     fn of_single_slots<const F: usize, const R: usize>(tree: &KdTree<F, R>) -> Self {
         let count = tree.rows.len();
         let (of_slot, of_node) = ((0..count as u32).collect(), vec![MIXED; tree.cells.len()]);
-        Self { pairs: Vec::with_capacity(count), of_slot, of_node, sizes: vec![1; count] }
+        let leaves = vec![LeafState { stocked: true, hopeful: false, bound: f64::INFINITY }; tree.leaves.len()];
+        Self { pairs: Vec::with_capacity(count), of_slot, of_node, sizes: vec![1; count], leaves }
     }
 
     /// One round; whether any components were joined.
@@ -49,31 +89,32 @@ impl Forest {
         let largest = (0..self.sizes.len()).max_by_key(|&c| self.sizes[c]).unwrap_or(0) as u32;
         let shortest: Vec<_> = self.sizes.iter().map(|_| AtomicU64::new(f64::MAX.to_bits())).collect();
         let components = Components { of_slot: &self.of_slot, of_node: &self.of_node, shortest: &shortest, largest };
-        let (of_slot, of_node) = (&self.of_slot, &self.of_node);
-        let busy = |leaf: usize| of_node[tree.node_of_leaf[leaf] as usize] != largest;
-        let leaves = candidates.par_chunks_mut(LANES).enumerate().filter(|(leaf, _)| busy(*leaf));
-        leaves.for_each(|(leaf, candidates)| {
-            for (candidates, &own) in candidates.iter_mut().zip(&of_slot[leaf * LANES..]) {
-                if let Some((squared, _)) = candidates.foreign(own, of_slot).filter(|_| own != largest) {
-                    components.shorten(own, squared);
-                }
+        let busy = |leaf: usize| components.of_node[tree.node_of_leaf[leaf] as usize] != largest;
+        let leaves = candidates.par_chunks_mut(LANES).zip(&mut self.leaves).enumerate();
+        leaves.filter(|(leaf, _)| busy(*leaf)).for_each(|(leaf, (candidates, state))| {
+            state.advance(candidates, &components, leaf);
+        });
+        let leaves = candidates.par_chunks_mut(LANES).zip(&mut self.leaves).enumerate();
+        leaves.filter(|(leaf, _)| busy(*leaf)).for_each_init(Stack::new, |stack, (leaf, (candidates, state))| {
+            let component = components.of_node[tree.node_of_leaf[leaf] as usize];
+            if component == MIXED || state.bound <= components.shortest(component) {
+                search_foreign(tree, chords, &components, leaf, candidates, stack);
+                state.summarise(candidates, &components, leaf);
             }
         });
-        let leaves = candidates.par_chunks_mut(LANES).enumerate().filter(|(leaf, _)| busy(*leaf));
-        leaves.for_each(|(leaf, candidates)| search_foreign(tree, chords, &components, leaf, candidates));
 
         // Of a component's edges of the shortest length, the first.
         let mut chosen = vec![(Edge::new(f64::INFINITY, MIXED, MIXED), [MIXED; 2]); self.sizes.len()];
-        for (leaf, candidates) in candidates.chunks_mut(LANES).enumerate().filter(|(leaf, _)| busy(*leaf)) {
-            for (lane, candidates) in candidates.iter_mut().enumerate() {
-                let slot = leaf * LANES + lane;
-                let own = of_slot[slot];
-                let Some((squared, partner)) = candidates.foreign(own, of_slot) else { continue };
+        for (leaf, _) in self.leaves.iter().enumerate().filter(|(leaf, state)| state.hopeful && busy(*leaf)) {
+            let slots = leaf * LANES..((leaf + 1) * LANES).min(candidates.len());
+            for slot in slots {
+                let own = self.of_slot[slot];
+                let Some((squared, partner)) = candidates[slot].foreign(own, &self.of_slot) else { continue };
                 if own != largest && squared <= components.shortest(own) {
                     let edge = Edge::new(squared, tree.rows[slot], tree.rows[partner as usize]);
                     let (first, joins) = &mut chosen[own as usize];
                     if edge.precedes(first) {
-                        (*first, *joins) = (edge, [own, of_slot[partner as usize]]);
+                        (*first, *joins) = (edge, [own, self.of_slot[partner as usize]]);
                     }
                 }
             }

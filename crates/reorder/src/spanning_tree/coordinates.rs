@@ -14,41 +14,38 @@ const NORM_TOLERANCE: f64 = 16.0 * f64::EPSILON;
 /// Points that a search tree can be built over.
 pub(super) struct Coordinates {
     embedding: Embedding,
-    distinct: Distinct,
+    /// `embedding.dimension()` numbers for each input row. Equal points have equal bits.
+    values: Vec<f64>,
     span: Span,
 }
 
 /// The algorithm for one number of flat and of round coordinates.
-type Span = fn(&Embedding, &Distinct) -> Vec<[u32; 2]>;
+type Span = fn(&Embedding, &[f64]) -> Vec<[u32; 2]>;
 
 impl Coordinates {
     /// `None` where the manifold has no embedding, or one that is not searched here, or where a point has no direction.
     pub(super) fn of<M: Manifold>(manifold: &M, points: &[M::Point]) -> Option<Self> {
         let embedding = manifold.embedding()?;
         let span = span_for(&embedding).filter(|_| points.len() < 1 << 31)?;
-        let mut distinct = Distinct::with_capacity(embedding.dimension(), points.len());
-        let mut point = vec![0.0; embedding.dimension()];
-        for p in points {
-            manifold.embed(p, &mut point);
-            let (_, unit) = point.split_at_mut(embedding.flat_dimension);
+        let mut values = vec![0.0; embedding.dimension() * points.len()];
+        for (p, point) in points.iter().zip(values.chunks_exact_mut(embedding.dimension())) {
+            manifold.embed(p, point);
             if let Some(round) = &embedding.round {
+                let (_, unit) = point.split_at_mut(embedding.flat_dimension);
                 normalise(unit)?;
                 if round.antipodes_identified {
                     turn_to_one_side(unit);
                 }
             }
-            // Negative zeros become positive: equal numbers have equal bits.
+            // Negative zeros become positive.
             point.iter_mut().for_each(|x| *x += 0.0);
-            distinct.push(&point);
         }
-        Some(Self { embedding, distinct, span })
+        Some(Self { embedding, values, span })
     }
 
     /// The edges of the minimum spanning tree as pairs of input rows. Fewer than n − 1 where all distances left overflow.
     pub(super) fn spanning_pairs(self) -> Vec<[u32; 2]> {
-        let mut pairs = (self.span)(&self.embedding, &self.distinct);
-        pairs.extend(&self.distinct.repeats);
-        pairs
+        (self.span)(&self.embedding, &self.values)
     }
 }
 
@@ -75,17 +72,26 @@ fn span_for(embedding: &Embedding) -> Option<Span> {
     })
 }
 
-fn span<const F: usize, const R: usize>(embedding: &Embedding, distinct: &Distinct) -> Vec<[u32; 2]> {
-    let records = distinct.points().map(|(point, row)| {
+fn span<const F: usize, const R: usize>(embedding: &Embedding, values: &[f64]) -> Vec<[u32; 2]> {
+    let chords = Chords::new(embedding);
+    let record = |(point, row): (&[f64], u32)| {
         let (x, u) = point.split_at(embedding.flat_dimension);
         let mut record = Record { flat: [0.0; F], round: [0.0; R], row };
         record.flat[..x.len()].copy_from_slice(x);
         record.round.copy_from_slice(u);
         record
-    });
-    let chords = Chords::new(embedding);
-    let tree = KdTree::<F, R>::new(records.collect(), chords.weights());
-    boruvka::spanning_pairs(&tree, &chords)
+    };
+    let points = || values.chunks_exact(embedding.dimension()).zip(0..);
+    let tree = KdTree::<F, R>::new(points().map(record).collect(), chords.weights());
+    if !tree.has_heap() {
+        return boruvka::spanning_pairs(&tree, &chords);
+    }
+    // A few equal points are like any others, but time grows with the square of their number.
+    let distinct = Distinct::of(points(), values.len() / embedding.dimension());
+    let records = distinct.points.into_iter().map(record).collect();
+    let mut pairs = boruvka::spanning_pairs(&KdTree::<F, R>::new(records, chords.weights()), &chords);
+    pairs.extend(distinct.repeats);
+    pairs
 }
 
 fn normalise(unit: &mut [f64]) -> Option<()> {

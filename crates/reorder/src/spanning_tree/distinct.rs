@@ -1,55 +1,35 @@
 //! Points that differ, found by hashing.
 
 /// Distinct points in the order of their first rows.
-pub(super) struct Distinct {
-    dimension: usize,
-    values: Vec<f64>,
-    /// The first input row of each.
-    rows: Vec<u32>,
+pub(super) struct Distinct<'a> {
+    /// Each with its first row.
+    pub(super) points: Vec<(&'a [f64], u32)>,
     /// [first row, row] of every other occurrence.
     pub(super) repeats: Vec<[u32; 2]>,
-    seen: u32,
-    /// Open addressing: 1 + index of a point, or 0.
-    table: Vec<u32>,
 }
 
-impl Distinct {
-    pub(super) fn with_capacity(dimension: usize, count: usize) -> Self {
-        Self {
-            dimension,
-            values: Vec::with_capacity(dimension * count),
-            rows: Vec::with_capacity(count),
-            repeats: Vec::new(),
-            seen: 0,
-            table: vec![0; (2 * count).next_power_of_two()],
-        }
-    }
-
-    /// The next row. At most as many as the capacity: the table does not grow.
-    pub(super) fn push(&mut self, point: &[f64]) {
-        let row = self.seen;
-        self.seen += 1;
-        let last = self.table.len() - 1;
-        let mut place = hash(point) as usize & last;
-        while let Some(index) = self.table[place].checked_sub(1) {
-            if self.point(index as usize) == point {
-                self.repeats.push([self.rows[index as usize], row]);
-                return;
+impl<'a> Distinct<'a> {
+    pub(super) fn of(points: impl Iterator<Item = (&'a [f64], u32)>, count: usize) -> Self {
+        let mut distinct = Self { points: Vec::new(), repeats: Vec::new() };
+        // Open addressing: 1 + index of a distinct point, or 0.
+        let mut table = vec![0_u32; (2 * count).next_power_of_two()];
+        let last = table.len() - 1;
+        for (point, row) in points {
+            let mut place = hash(point) as usize & last;
+            while let Some(index) = table[place].checked_sub(1) {
+                let (known, first_row) = distinct.points[index as usize];
+                if known == point {
+                    distinct.repeats.push([first_row, row]);
+                    break;
+                }
+                place = (place + 1) & last;
             }
-            place = (place + 1) & last;
+            if table[place] == 0 {
+                distinct.points.push((point, row));
+                table[place] = distinct.points.len() as u32;
+            }
         }
-        self.table[place] = self.rows.len() as u32 + 1;
-        self.rows.push(row);
-        self.values.extend(point);
-    }
-
-    fn point(&self, index: usize) -> &[f64] {
-        &self.values[index * self.dimension..][..self.dimension]
-    }
-
-    /// Coordinates and first row of each distinct point.
-    pub(super) fn points(&self) -> impl Iterator<Item = (&[f64], u32)> {
-        self.values.chunks_exact(self.dimension).zip(self.rows.iter().copied())
+        distinct
     }
 }
 

@@ -6,7 +6,7 @@ use super::boruvka::MIXED;
 use super::candidates::{Candidates, K, NOBODY, tie_precedes};
 use super::chord::Chords;
 use super::kd_tree::{KdTree, LANES};
-use super::traversal::{Seeker, search};
+use super::traversal::{Seeker, Stack, search};
 
 /// The components of a round and the shortest squared distance that each has found to any other.
 pub(super) struct Components<'a> {
@@ -40,6 +40,7 @@ pub(super) fn search_foreign<const F: usize, const R: usize>(
     components: &Components,
     leaf: usize,
     candidates: &mut [Candidates],
+    stack: &mut Stack,
 ) {
     let first_slot = leaf * LANES;
     let mut own = [MIXED; LANES];
@@ -63,7 +64,7 @@ pub(super) fn search_foreign<const F: usize, const R: usize>(
         reach: [-1.0; LANES],
     };
     seeker.refresh();
-    search(tree, chords, leaf, &mut seeker);
+    search(tree, chords, leaf, stack, &mut seeker);
     for (lane, candidates) in candidates.iter_mut().enumerate().filter(|(lane, _)| seeks[*lane]) {
         let (squared, slot) = seeker.found[lane];
         // Every reach on the way was at least the present one, so that nothing within it was passed over.

@@ -71,6 +71,13 @@ impl<const F: usize, const R: usize> KdTree<F, R> {
         Self { leaves, node_of_leaf, rows, cells, links }
     }
 
+    /// Whether all points of some full leaf are equal.
+    pub(super) fn has_heap(&self) -> bool {
+        let is_point = |cell: &Cell<F, R>| cell.flat.iter().chain(&cell.round).all(|[low, high]| low == high);
+        let full = &self.node_of_leaf[..self.rows.len() / LANES];
+        full.iter().any(|&node| is_point(&self.cells[node as usize]))
+    }
+
     #[inline(always)]
     pub(super) fn below(&self, node: usize) -> Below {
         let link = self.links[node];

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::candidates::{Candidates, K, NOBODY, tie_precedes};
 use super::chord::Chords;
 use super::kd_tree::{KdTree, LANES};
-use super::traversal::{Seeker, search};
+use super::traversal::{Seeker, Stack, search};
 
 /// The candidates of every slot.
 pub(super) fn nearest_neighbours<const F: usize, const R: usize>(
@@ -13,11 +13,11 @@ pub(super) fn nearest_neighbours<const F: usize, const R: usize>(
     chords: &Chords,
 ) -> Vec<Candidates> {
     let mut all = vec![Candidates::NONE; tree.rows.len()];
-    all.par_chunks_mut(LANES).enumerate().for_each(|(leaf, candidates)| {
+    all.par_chunks_mut(LANES).enumerate().for_each_init(Stack::new, |stack, (leaf, candidates)| {
         let mut reach = [-1.0; LANES];
         reach[..candidates.len()].fill(f64::MAX);
         let mut seeker = Nearest { rows: &tree.rows, first_slot: leaf * LANES, candidates, reach };
-        search(tree, chords, leaf, &mut seeker);
+        search(tree, chords, leaf, stack, &mut seeker);
         for candidates in seeker.candidates {
             // A list that is not full holds everyone.
             if candidates.slots[K - 1] != NOBODY {

@@ -23,15 +23,20 @@ pub(super) fn search<const F: usize, const R: usize>(
     tree: &KdTree<F, R>,
     chords: &Chords,
     leaf: usize,
+    stack: &mut Stack,
     seeker: &mut impl Seeker,
 ) {
-    vectorised::run(Search { tree, chords, leaf, seeker });
+    vectorised::run(Search { tree, chords, leaf, stack, seeker });
 }
+
+/// Nodes put off, with the lower bounds of the squared distances to them: room that one search leaves to the next.
+pub(super) type Stack = Vec<(usize, [f64; LANES])>;
 
 struct Search<'a, const F: usize, const R: usize, S> {
     tree: &'a KdTree<F, R>,
     chords: &'a Chords,
     leaf: usize,
+    stack: &'a mut Stack,
     seeker: &'a mut S,
 }
 
@@ -51,12 +56,8 @@ impl<const F: usize, const R: usize, S: Seeker> Task for Search<'_, F, R, S> {
 impl<const F: usize, const R: usize, S: Seeker> Search<'_, F, R, S> {
     #[inline(always)]
     fn descend<const FUSED: bool>(&mut self, points: &Leaf<F, R>) {
-        // Never deeper than the tree, whose leaves are numbered in 31 bits.
-        let mut stack = [(0, [0.0; LANES]); 32];
-        let mut height = 1;
-        while height > 0 {
-            height -= 1;
-            let (mut node, mut bounds) = stack[height];
+        self.stack.push((0, [0.0; LANES]));
+        while let Some((mut node, mut bounds)) = self.stack.pop() {
             while self.wanting(node, &bounds) != 0 {
                 match self.tree.below(node) {
                     Below::Leaf(leaf) => {
@@ -74,8 +75,7 @@ impl<const F: usize, const R: usize, S: Seeker> Search<'_, F, R, S> {
                             ((left, a), (right, b))
                         };
                         if within(&far.1, reach) != 0 {
-                            stack[height] = far;
-                            height += 1;
+                            self.stack.push(far);
                         }
                         (node, bounds) = near;
                     }
