@@ -28,7 +28,6 @@ pub(crate) enum Bound {
     /// Our cost, in the unit of the figure.
     Ours(f64),
     /// Our cost divided by the peer's.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the areas to come are judged by ratio"))]
     Ratio(f64),
 }
 
