@@ -61,6 +61,11 @@ pub(crate) fn of_curve<M: Manifold>(curve: &Curve<M>, gaps: &[f64], found: &Swee
     few.into_iter().chain(of_interleaving(curve, gaps)).chain(edges).chain(vertices).collect()
 }
 
+/// The ends of an open curve, where they come near each other.
+pub(crate) fn of_ends(at: [usize; 2]) -> Doubt {
+    Doubt { at, why: "the ends come so near to each other that the curve may be closed".to_owned() }
+}
+
 /// A doubt at the middle of the first stretch that looks like two passes of a curve whose points fall between each other: gaps
 /// that alternate, while every second point alone is spaced far more evenly.
 fn of_interleaving<M: Manifold>(curve: &Curve<M>, gaps: &[f64]) -> Option<Doubt> {

@@ -44,6 +44,7 @@
 //! to the ends are as uneven) and at most twice the longest of the five gaps next to either end, and the curve turns by less
 //! than 90° at both ends.
 
+mod agreement;
 mod curve;
 mod doubts;
 mod duplicates;
@@ -52,14 +53,18 @@ mod order;
 mod ordering;
 mod poses;
 mod recovery;
+mod repair;
 mod spanning_tree;
 mod sweep;
 mod topology;
+mod tour;
 mod walk;
+mod weight;
 
 pub use error::OrderError;
-pub use order::order;
-pub use ordering::{Certificate, Doubt, Method, Options, Ordering, Topology, TopologyChoice, Verdict};
+pub use order::{MOST_REPAIRED_UNASKED, order};
+pub use ordering::{Certificate, Doubt, Method, MethodChoice, Options, Ordering, Repair, Repaired, Topology, TopologyChoice, Verdict};
 pub use petgraph;
-pub use poses::order_poses;
+pub use poses::{order_poses, order_weighted};
 pub use spanning_tree::{Tree, minimum_spanning_tree};
+pub use weight::{Weight, Weighted, automatic_weight};

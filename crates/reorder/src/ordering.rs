@@ -31,6 +31,41 @@ pub enum TopologyChoice {
 pub enum Method {
     /// The minimum spanning tree, read as a path.
     Mst,
+    /// A path that is short and turns little: Σ d + λ Σ ‖log_p(previous) + log_p(next)‖ with λ = 3, made small by local search.
+    Repaired,
+}
+
+/// Which method shall find the order.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MethodChoice {
+    /// The minimum spanning tree, repaired where needed.
+    #[default]
+    Auto,
+    /// The minimum spanning tree and nothing else.
+    Mst,
+}
+
+/// Whether an order that something speaks against is sought again as a path that is short and turns little.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Repair {
+    /// Up to [`MOST_REPAIRED_UNASKED`](crate::MOST_REPAIRED_UNASKED) points.
+    #[default]
+    Auto,
+    /// However many points there are, and however long it takes.
+    Always,
+    /// Never.
+    Off,
+}
+
+/// How a repaired order differs from the minimum spanning tree. Equal points go by their first row.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Repaired {
+    /// Edges of the tree that the order does not follow.
+    pub dropped: Vec<[usize; 2]>,
+    /// Neighbours in the order that are none in the tree.
+    pub added: Vec<[usize; 2]>,
 }
 
 /// How far the order may be trusted; a later variant is a stronger claim.
@@ -55,6 +90,10 @@ pub struct Options {
     /// Without it an open curve starts at its end with the smaller row; a closed one at row 0, toward the neighbour with the
     /// smaller row.
     pub start: Option<usize>,
+    /// How the order is found.
+    pub method: MethodChoice,
+    /// Whether [`MethodChoice::Auto`] may repair.
+    pub repair: Repair,
 }
 
 /// A reason not to trust the order, and where.
@@ -111,6 +150,8 @@ pub struct Ordering {
     pub duplicates: Vec<Vec<usize>>,
     /// Sampling figures.
     pub certificate: Certificate,
+    /// What was repaired; `None` where nothing was.
+    pub repaired: Option<Repaired>,
     /// Everything that speaks against the order.
     pub doubts: Vec<Doubt>,
 }

@@ -1,6 +1,7 @@
 //! The order itself: tree, topology, start.
 
 use petgraph::graph::NodeIndex;
+use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
 
 use crate::curve::Curve;
@@ -47,6 +48,24 @@ pub(crate) fn recover<M: Manifold>(
 }
 
 impl Recovery {
+    /// For every row the first row of those that hold the same point.
+    pub(crate) fn names(&self, count: usize) -> Vec<usize> {
+        let mut names = vec![0; count];
+        for group in &self.distinct.groups {
+            for &row in group {
+                names[row] = group[0];
+            }
+        }
+        names
+    }
+    /// The edges of the tree as (smaller row, greater row), ascending.
+    pub(crate) fn tree_edges(&self) -> Vec<(usize, usize)> {
+        let tree = &self.distinct.tree;
+        let rows = tree.edge_references().map(|edge| (tree[edge.source()], tree[edge.target()]));
+        let mut edges: Vec<_> = rows.map(|(a, b)| (a.min(b), a.max(b))).collect();
+        edges.sort_unstable();
+        edges
+    }
     /// The neighbours as (smaller row, greater row), ascending.
     pub(crate) fn edges(&self) -> Vec<(usize, usize)> {
         let closing = self.rows.last().zip(self.rows.first()).filter(|_| self.closed);

@@ -105,7 +105,7 @@ fn the_order_is_the_shortest_of_all_permutations() {
         let poses: Vec<Pose> = (0..n).map(|k| helix_pose(0.4 * k as f64 + 0.1 * random.signed())).collect();
         let metric = Se3::with_metres_per_radian(0.3).unwrap();
         let mixed = shuffled(&poses, &random.permutation(n));
-        let open = Options { topology: TopologyChoice::Open, start: None };
+        let open = Options { topology: TopologyChoice::Open, ..Options::default() };
         let found = order(&metric, &mixed, &open).unwrap().order;
         let length = |rows: &[usize]| rows.windows(2).map(|w| metric.distance(&mixed[w[0]], &mixed[w[1]])).sum::<f64>();
         let shortest = permutations(n).iter().map(|rows| length(rows)).fold(f64::INFINITY, f64::min);

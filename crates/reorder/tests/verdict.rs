@@ -254,7 +254,7 @@ fn no_wrong_order_of_uneven_clean_samples_is_believed() {
 #[test]
 fn json_has_the_fixed_shape() {
     let poses: Vec<Pose> = (0..8).map(|k| helix_pose(0.05 * f64::from(k))).collect();
-    let options = Options { topology: TopologyChoice::Open, start: Some(7) };
+    let options = Options { topology: TopologyChoice::Open, start: Some(7), ..Options::default() };
     let mut json = serde_json::to_value(order_poses(&poses, 0.5, &options).unwrap()).unwrap();
     let certificate = json.as_object_mut().unwrap().remove("certificate").unwrap();
     assert_eq!(
