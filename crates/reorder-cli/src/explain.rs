@@ -26,12 +26,16 @@ pub(crate) fn explain(ordering: &Ordering) -> String {
     });
     if let Some(length) = ordering.metres_per_radian {
         let kept = if ordering.weight_stable == Some(true) { "the same" } else { "another" };
-        lines.push(format!("weight      one radian counts as {length:.4} m; with half or twice of it the order is {kept}"));
+        lines.push(format!(
+            "weight      one radian counts as {length:.4} m; with half or twice of it the order is {kept}"
+        ));
     }
     let certificate = &ordering.certificate;
     lines.push(format!("gaps        {:.6} at most", certificate.max_gap));
     if let Some((reach, epsilon)) = certificate.reach.zip(certificate.epsilon) {
-        lines.push(format!("reach       {reach:.6} estimated; epsilon = gap/(2 reach) = {epsilon:.3}, theorems ask for < 1"));
+        lines.push(format!(
+            "reach       {reach:.6} estimated; epsilon = gap/(2 reach) = {epsilon:.3}, theorems ask for < 1"
+        ));
     }
     if let Some((radius, margin)) = certificate.injectivity_radius.zip(certificate.margin) {
         lines.push(format!("geodesics   unique within {radius:.6}: {margin:.6} more than the longest gap"));

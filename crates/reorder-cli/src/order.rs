@@ -6,9 +6,9 @@ use planner::reorder::{
 };
 use planner::se3_geom::{Euclidean, Se2, Se3, Sim2, So3, Sphere};
 
+use crate::explain::explain;
 use crate::failure::Failure;
 use crate::output::print;
-use crate::explain::explain;
 use crate::source::{Manifold, Points, Rows, Source};
 
 #[derive(Args)]
@@ -33,6 +33,9 @@ pub(crate) struct Arguments {
     /// Search for a shorter and smoother order where the minimum spanning tree is none to trust
     #[arg(long, default_value = "auto")]
     repair: RepairChoice,
+    /// Move noisy points onto the line of their neighbours before they are ordered; what is handed on stays as it was
+    #[arg(long)]
+    denoise: bool,
     /// Print what speaks for and against the order, for a person, in place of the order
     #[arg(long, conflicts_with = "format")]
     explain: bool,
@@ -133,6 +136,7 @@ fn order_points(arguments: &Arguments, points: &Points) -> Result<Ordering, Orde
             RepairChoice::Always => Repair::Always,
             RepairChoice::Off => Repair::Off,
         },
+        denoise: arguments.denoise,
     };
     let weight = arguments.metres_per_radian;
     match points {

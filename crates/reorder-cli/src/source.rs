@@ -77,8 +77,10 @@ impl Source {
             return rows_of_table(&table, manifold);
         }
         let poses = self.poses()?.poses;
-        let values: Vec<Vec<f64>> =
-            poses.iter().map(|p| [p.translation.vector.as_slice(), &xyzw_from_rotation(&p.rotation)].concat()).collect();
+        let values: Vec<Vec<f64>> = poses
+            .iter()
+            .map(|p| [p.translation.vector.as_slice(), &xyzw_from_rotation(&p.rotation)].concat())
+            .collect();
         let (chosen, points) = match manifold {
             None | Some(Manifold::Se3) => (0..7, Points::Poses(poses)),
             Some(Manifold::So3) => (3..7, Points::Rotations(poses.iter().map(|p| p.rotation).collect())),

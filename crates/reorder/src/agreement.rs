@@ -2,7 +2,6 @@
 
 use se3_geom::Manifold;
 
-use crate::doubts;
 use crate::error::OrderError;
 use crate::ordering::{Doubt, Options};
 use crate::recovery::{Recovery, recover};
@@ -19,7 +18,16 @@ pub(crate) struct Variant<M> {
 /// Prices of turning under which a repaired order must be the same, besides its own.
 const OTHER_TURNINGS: [f64; 3] = [0.0, 8.0, 1.0];
 /// Doubts that one other search may give.
-const MOST_DOUBTS: usize = 30;
+const MOST_DOUBTS: usize = 20;
+/// After so many doubts no other search is made: each costs as much as the order itself.
+const ENOUGH_DOUBTS: usize = 8;
+
+/// What other searches say to an order.
+pub(crate) struct Agreement {
+    /// Whether every other weight gives the same order; `None` where none was tried.
+    pub(crate) weight_stable: Option<bool>,
+    pub(crate) doubts: Vec<Doubt>,
+}
 
 type Edges = Vec<(usize, usize)>;
 
@@ -33,7 +41,7 @@ pub(crate) fn of_trees<M: Manifold>(
     let edges = recovery.edges();
     let mut found = Vec::new();
     for Variant { manifold, change } in variants {
-        let kept = recover(manifold, points, &Options { start: None, ..*options })?.edges();
+        let kept = recover(manifold, points, options, None)?.edges();
         let lost: Vec<_> = edges.iter().filter(|edge| kept.binary_search(edge).is_err()).collect();
         // A closing edge is the only one that a curve can gain without losing another.
         let gained = kept.iter().find(|edge| edges.binary_search(edge).is_err());
@@ -50,7 +58,7 @@ pub(crate) fn of_trees<M: Manifold>(
 }
 
 /// Everything that speaks against a repaired order: wherever another price of turning, another start of the search or another
-/// metric gives other neighbours. Also whether all metrics agree.
+/// metric gives other neighbours, until there are doubts enough.
 #[expect(clippy::too_many_arguments, reason = "one call")]
 pub(crate) fn examine_sequence<M: Manifold>(
     manifold: &M,
@@ -61,34 +69,41 @@ pub(crate) fn examine_sequence<M: Manifold>(
     tree_edges: &[(usize, usize)],
     name: &[usize],
     options: &Options,
-) -> Result<(bool, Vec<Doubt>), OrderError> {
+) -> Agreement {
     let edges = found.edges(name);
-    let mut doubts = Vec::new();
-    if found.unsure_of_ends {
-        doubts.push(doubts::of_ends([found.rows[0], found.rows[found.rows.len() - 1]]));
-    }
-    let solve = |turning, preferred: &[_]| {
+    let solve = |manifold: &M, problem: &Problem<M>, turning: f64, preferred: &[_]| {
         sequence(manifold, points, problem, turning, preferred, options.topology).edges(name)
     };
-    doubts.extend(disagreements(&edges, &solve(TURNING, tree_edges), "searched from the tree"));
+    let mut doubts: Vec<Doubt> = Vec::new();
+    let mut collect = |other: Edges, how: &str| {
+        let more = disagreements(&edges, &other, how);
+        let agrees = more.is_empty();
+        doubts.extend(
+            more.into_iter().filter(|doubt| doubts.iter().all(|known| known.at != doubt.at)).collect::<Vec<_>>(),
+        );
+        (agrees, doubts.len() < ENOUGH_DOUBTS)
+    };
+    let (mut weight_stable, mut go_on) = (None, true);
     for turning in OTHER_TURNINGS {
-        let other = solve(turning, &[]);
-        doubts.extend(disagreements(&edges, &other, &format!("with turning at {turning} times its price")));
+        if go_on {
+            let how = format!("if turning cost {turning} lengths in place of {TURNING}");
+            (_, go_on) = collect(solve(manifold, problem, turning, &[]), &how);
+        }
     }
-    let mut stable = true;
+    if go_on {
+        (_, go_on) = collect(
+            solve(manifold, problem, TURNING, tree_edges),
+            "if the search starts from the minimum spanning tree",
+        );
+    }
     for Variant { manifold, change } in variants {
-        let other = sequence(manifold, points, &Problem::new(manifold, points), TURNING, &[], options.topology);
-        let more = disagreements(&edges, &other.edges(name), change);
-        stable &= more.is_empty();
-        doubts.extend(more);
+        if go_on {
+            let (agrees, more) = collect(solve(manifold, &Problem::new(manifold, points), TURNING, &[]), change);
+            weight_stable = Some(agrees && weight_stable != Some(false));
+            go_on = more;
+        }
     }
-    let mut seen = Vec::new();
-    doubts.retain(|doubt| {
-        let new = !seen.contains(&doubt.at);
-        seen.push(doubt.at);
-        new
-    });
-    Ok((stable, doubts))
+    Agreement { weight_stable, doubts }
 }
 
 fn disagreements(edges: &Edges, other: &Edges, how: &str) -> Vec<Doubt> {
@@ -97,7 +112,7 @@ fn disagreements(edges: &Edges, other: &Edges, how: &str) -> Vec<Doubt> {
     let lost: Vec<_> = lost
         .map(|&(i, j)| Doubt {
             at: [i, j],
-            why: format!("{how}, these two are no neighbours; a point between them would settle it"),
+            why: format!("{how}, these two are no neighbours: a point of the curve between them would settle it"),
         })
         .collect();
     let doubts = if lost.is_empty() {

@@ -14,6 +14,10 @@ impl<'a, M: Manifold> Curve<'a, M> {
     pub(crate) fn new(manifold: &'a M, points: &'a [M::Point], rows: &'a [usize], closed: bool) -> Self {
         Self { manifold, points, rows, closed }
     }
+    /// The same points as a loop.
+    pub(crate) fn joined(&self) -> Self {
+        Self { closed: true, ..*self }
+    }
     pub(crate) fn len(&self) -> usize {
         self.rows.len()
     }
@@ -34,6 +38,9 @@ impl<'a, M: Manifold> Curve<'a, M> {
             next if next == self.len() => self.closed.then_some(0),
             next => Some(next),
         }
+    }
+    pub(crate) fn are_neighbours(&self, i: usize, j: usize) -> bool {
+        self.next(i) == Some(j) || self.next(j) == Some(i)
     }
     /// Gap k leads from position k to `next(k)`.
     pub(crate) fn gaps(&self) -> Vec<f64> {

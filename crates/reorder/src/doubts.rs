@@ -50,15 +50,36 @@ pub(crate) fn of_tree(tree: &Tree) -> Vec<Doubt> {
         .collect()
 }
 
-/// Every doubt about an order that follows the tree; `repeated` tells which rows stand for several equal points.
-pub(crate) fn of_curve<M: Manifold>(curve: &Curve<M>, gaps: &[f64], found: &Sweep, repeated: &[bool]) -> Vec<Doubt> {
+/// What speaks against an order.
+#[derive(Default)]
+pub(crate) struct Doubts {
+    /// What no other order would mend.
+    pub(crate) firm: Vec<Doubt>,
+    /// What may come of a wrong order or of sparse samples: agreement of many searches answers it.
+    pub(crate) searchable: Vec<Doubt>,
+}
+
+/// Every doubt about an order of distinct points; `repeated` tells which rows stand for several equal points.
+/// Long, short and alternating gaps are no doubts where they are `explained`: dense samples that were thrown independently have them.
+pub(crate) fn of_curve<M: Manifold>(
+    curve: &Curve<M>,
+    gaps: &[f64],
+    found: &Sweep,
+    repeated: &[bool],
+    explained: bool,
+) -> Doubts {
     let few = (3..FEWEST_POINTS).contains(&curve.len()).then(|| Doubt {
         at: curve.rows_at(0, curve.len() - 1),
         why: format!("{} distinct points are too few to tell one curve from another", curve.len()),
     });
-    let edges = (0..gaps.len()).flat_map(|k| of_gap(curve, gaps, repeated, k));
-    let vertices = (0..curve.len()).flat_map(|k| of_vertex(curve, found, k));
-    few.into_iter().chain(of_interleaving(curve, gaps)).chain(edges).chain(vertices).collect()
+    let interleaving = if explained { None } else { of_interleaving(curve, gaps) };
+    let edges = (0..gaps.len()).flat_map(|k| of_gap(curve, gaps, repeated, k, explained));
+    // What comes near an end may be what follows it, which no search would tell.
+    let is_end = |k: usize| curve.previous(k).is_none() || curve.next(k).is_none();
+    let (ends, inner): (Vec<_>, Vec<_>) = (0..curve.len()).partition(|&k| is_end(k));
+    let of_vertices = |all: Vec<usize>| all.into_iter().flat_map(|k| of_vertex(curve, found, k)).collect::<Vec<_>>();
+    let firm = few.into_iter().chain(interleaving).chain(edges).chain(of_vertices(ends)).collect();
+    Doubts { firm, searchable: of_vertices(inner) }
 }
 
 /// The ends of an open curve, where they come near each other.
@@ -91,14 +112,14 @@ fn mean_change<'a>(pairs: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
     f64::sqrt(sum / count)
 }
 
-fn of_gap<M: Manifold>(curve: &Curve<M>, gaps: &[f64], repeated: &[bool], k: usize) -> Vec<Doubt> {
+fn of_gap<M: Manifold>(curve: &Curve<M>, gaps: &[f64], repeated: &[bool], k: usize, explained: bool) -> Vec<Doubt> {
     let at = curve.rows_at(k, (k + 1) % curve.len());
     let median = median_around(gaps, k, curve.closed).unwrap_or(gaps[k]);
     let mut reasons = Vec::new();
-    if gaps[k] > LONG_GAP * median {
+    if !explained && gaps[k] > LONG_GAP * median {
         reasons.push(format!("the gap is {:.1} times the median of the gaps around it", gaps[k] / median));
     }
-    if gaps[k] * SHORT_GAP < median {
+    if !explained && gaps[k] * SHORT_GAP < median {
         let times = median / gaps[k];
         reasons
             .push(format!("the median of the gaps around is {times:.1} times this gap: the curve may come back here"));

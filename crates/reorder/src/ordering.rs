@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::certificate::Certificate;
+
 /// Whether a curve has ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -76,7 +78,7 @@ pub enum Verdict {
     Ambiguous,
     /// Every test that was made agrees with the order, yet nothing is proven.
     Plausible,
-    /// The hypotheses of a reconstruction theorem hold with margin. Not claimed by any method yet.
+    /// Every condition of [`Certificate::conditions`] holds: see [what it asserts](crate#certified).
     Certified,
 }
 
@@ -94,6 +96,9 @@ pub struct Options {
     pub method: MethodChoice,
     /// Whether [`MethodChoice::Auto`] may repair.
     pub repair: Repair,
+    /// Whether the points are noisy, and each is to be moved onto the principal line of its neighbours before they are ordered.
+    /// Never changes a point that is handed on: only the order comes from the moved ones, and a clean curve is better left alone.
+    pub denoise: bool,
 }
 
 /// A reason not to trust the order, and where.
@@ -103,27 +108,6 @@ pub struct Doubt {
     pub at: [usize; 2],
     /// One sentence.
     pub why: String,
-}
-
-/// Figures on how densely the points sample the curve that the order draws. Lengths are in the unit of the manifold's metric.
-///
-/// These are **estimates from the points**: the true curve may bend between them. They prove nothing by themselves.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Certificate {
-    /// The greatest distance between neighbours in the order (the closing gap of a closed curve included).
-    pub max_gap: f64,
-    /// Federer's reach, min over ordered pairs of ‖v‖²/(2‖v⊥‖) with v = log_p(q) and v⊥ its part normal to the tangent at p,
-    /// the tangent being that of the parabola through p and its two neighbours (H. Federer, *Curvature measures*, 1959,
-    /// Theorem 4.18, carried to the tangent space by log). Exact in flat space, for exact tangents and dense points.
-    /// `None` where nothing is normal (a geodesic), where there are fewer than three points, or where the order is no curve.
-    pub reach: Option<f64>,
-    /// ε = max_gap / (2·reach): half the greatest gap in units of the reach. Below 1 is what the reconstruction theorems ask for.
-    pub epsilon: Option<f64>,
-    /// Radius within which geodesics are unique; `None` where it is infinite.
-    pub injectivity_radius: Option<f64>,
-    /// injectivity_radius − max_gap; `None` where that is infinite. Positive is what the theorems ask for. On SE(3) a gap that is
-    /// long in position alone makes it negative without making any geodesic ambiguous, so that this alone is no doubt.
-    pub margin: Option<f64>,
 }
 
 /// Points in order, and how far that order may be trusted. Serialises to the JSON object of `reorder order`.
@@ -152,17 +136,25 @@ pub struct Ordering {
     pub certificate: Certificate,
     /// What was repaired; `None` where nothing was.
     pub repaired: Option<Repaired>,
+    /// How far each point was moved to find the order, by row; empty where [`Options::denoise`] was not asked for.
+    pub moved: Vec<f64>,
     /// Everything that speaks against the order.
     pub doubts: Vec<Doubt>,
 }
 
 impl Ordering {
-    /// The order with equal points merged into their first row: what a curve can be drawn through.
+    /// The order with equal points that stand together merged into the first of them: what a curve can be drawn through. A point
+    /// that a repaired order passes twice is there twice.
     pub fn distinct(&self) -> Vec<usize> {
-        let mut repeated = vec![false; self.n];
-        for &row in self.duplicates.iter().flat_map(|group| &group[1..]) {
-            repeated[row] = true;
+        let mut name: Vec<usize> = (0..self.n).collect();
+        for group in &self.duplicates {
+            group.iter().for_each(|&row| name[row] = group[0]);
         }
-        self.order.iter().copied().filter(|&row| !repeated[row]).collect()
+        let mut rows = self.order.clone();
+        rows.dedup_by_key(|row| name[*row]);
+        while self.topology == Topology::Closed && rows.len() > 1 && name[rows[0]] == name[rows[rows.len() - 1]] {
+            rows.pop();
+        }
+        rows
     }
 }

@@ -34,12 +34,16 @@ pub fn order_weighted<M: Weighted>(
         Weight::Auto => automatic_weight::<M>(points)?,
         Weight::MetresPerRadian(length) => length,
     };
-    let metric_at = |length| M::with_metres_per_radian(length).ok_or(OrderError::InvalidLengthScale { value: length });
+    let metric_at = |scale: f64| {
+        let metric = M::with_metres_per_radian(scale * length);
+        metric.ok_or(OrderError::InvalidLengthScale { value: length })
+    };
+    let metric = metric_at(1.0)?;
     let variants = [
-        Variant { manifold: metric_at(0.5 * length)?, change: "with half as many metres per radian" },
-        Variant { manifold: metric_at(2.0 * length)?, change: "with twice as many metres per radian" },
+        Variant { manifold: metric_at(0.5)?, change: "with half as many metres per radian" },
+        Variant { manifold: metric_at(2.0)?, change: "with twice as many metres per radian" },
     ];
-    let mut ordering = order_among(&metric_at(length)?, &variants, points, options)?;
+    let mut ordering = order_among(&metric, &variants, points, options)?;
     ordering.metres_per_radian = Some(length);
     Ok(ordering)
 }

@@ -4,6 +4,7 @@ use petgraph::graph::NodeIndex;
 use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
 
+use crate::certificate::closes;
 use crate::curve::Curve;
 use crate::duplicates::{Distinct, merge};
 use crate::error::OrderError;
@@ -25,13 +26,16 @@ pub(crate) fn recover<M: Manifold>(
     manifold: &M,
     points: &[M::Point],
     options: &Options,
+    wanted_start: Option<usize>,
 ) -> Result<Recovery, OrderError> {
-    let distinct = distinct_points(manifold, points, options)?;
+    let distinct = distinct_points(manifold, points, options.topology, wanted_start)?;
     let tree = &distinct.tree;
     let mut rows = rows_along(tree, far_end(tree));
-    let ends = closing(&Curve::new(manifold, points, &rows, false));
+    let path = Curve::new(manifold, points, &rows, false);
+    let ends = closing(&path);
+    let branches = tree.node_indices().any(|node| tree.neighbors(node).count() > 2);
     let closed = match options.topology {
-        TopologyChoice::Auto => ends == Closing::Meets,
+        TopologyChoice::Auto => ends == Closing::Meets || (!branches && closes(&path)),
         TopologyChoice::Open => false,
         TopologyChoice::Closed => true,
     };
@@ -43,7 +47,7 @@ pub(crate) fn recover<M: Manifold>(
         None if rows[0] > rows[rows.len() - 1] => rows = rows_along(tree, distinct.node_of(rows[rows.len() - 1])),
         None => {}
     }
-    let unsure_of_ends = options.topology == TopologyChoice::Auto && ends == Closing::Near;
+    let unsure_of_ends = options.topology == TopologyChoice::Auto && ends == Closing::Near && !closed;
     Ok(Recovery { distinct, rows, closed, unsure_of_ends })
 }
 
@@ -76,13 +80,18 @@ impl Recovery {
     }
 }
 
-fn distinct_points<M: Manifold>(manifold: &M, points: &[M::Point], options: &Options) -> Result<Distinct, OrderError> {
+fn distinct_points<M: Manifold>(
+    manifold: &M,
+    points: &[M::Point],
+    topology: TopologyChoice,
+    start: Option<usize>,
+) -> Result<Distinct, OrderError> {
     let count = points.len();
-    let needed = if options.topology == TopologyChoice::Closed { 3 } else { 2 };
+    let needed = if topology == TopologyChoice::Closed { 3 } else { 2 };
     if count < needed {
         return Err(OrderError::TooFewPoints { count, needed });
     }
-    if let Some(start) = options.start.filter(|&start| start >= count) {
+    if let Some(start) = start.filter(|&start| start >= count) {
         return Err(OrderError::StartOutOfRange { start, count });
     }
     let merged = merge(manifold, points, &minimum_spanning_tree(manifold, points)?);

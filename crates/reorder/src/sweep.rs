@@ -1,8 +1,9 @@
-//! One pass over all pairs of points: reach, local sampling density, and points that come between neighbours.
+//! One pass over all pairs of near points: reach, local sampling density, and points that come between neighbours.
 
 use se3_geom::Manifold;
 
 use crate::curve::Curve;
+use crate::nearest::{PairSearch, Runs};
 
 /// The local sampling parameter above which a point is doubted.
 ///
@@ -10,11 +11,21 @@ use crate::curve::Curve;
 /// axis; at 0.72 there are samples that two different curves share (Bjerkevik, arXiv 2112.03656).
 pub(crate) const LOCAL_EPSILON: f64 = 0.72;
 
+/// A curve of at most this many points is searched for its reach pair by pair.
+const EXACT_REACH: usize = 2000;
+/// How many steps of a thinned curve are searched around each of its points.
+const THINNED_STEPS: f64 = 4.0;
+
 /// What the pass finds.
 pub(crate) struct Sweep {
     /// Smallest radius of a ball that touches the tangent at one point and passes through another; infinite where all points
     /// lie on all tangents.
     pub(crate) reach: f64,
+    /// For every position the smallest such ball that touches there, among those that were measured: all through neighbours, and
+    /// all that are small enough to make that position's ε exceed [`LOCAL_EPSILON`].
+    pub(crate) balls: Vec<f64>,
+    /// Smallest ball through a neighbour: the radius of curvature, as far as the samples show it.
+    pub(crate) curvature_radius: f64,
     /// For every position the nearest point that disputes one of its neighbours' places.
     pub(crate) rivals: Vec<Option<usize>>,
     /// For every position where ε = (longer gap)/(2·radius) exceeds [`LOCAL_EPSILON`]: the point on the smallest ball, and ε.
@@ -33,44 +44,118 @@ struct Vertex<T> {
 /// one's side (at more than 90° from the nearer one, by log at p). No rival anywhere means that every point's edges are the ones
 /// which NN-CRUST (Dey and Kumar, 1999) draws. At an open end the missing neighbour counts as `beyond_ends` away.
 ///
-/// The ball at p through q has radius ‖v‖²/(2‖v⊥‖) ≥ ‖v‖/2, v = log_p(q): only near pairs need their logarithm taken.
+/// The ball at p through q has radius ‖v‖²/(2‖v⊥‖) ≥ ‖v‖/2, v = log_p(q): only near pairs need their logarithm taken. Rivals and sparse
+/// points are found exactly. So is the reach of up to 2000 points; beyond that, balls that reach farther than four gaps are
+/// measured on thinned curves, every second point, every fourth, and so on: where two strands are w apart, the nearest kept point across
+/// is at most half a step ≤ w/4 beside the nearest point, so that (w² + w²/16)/2w overstates the reach by 1/16 at most.
 pub(crate) fn sweep<M: Manifold>(curve: &Curve<M>, beyond_ends: [f64; 2]) -> Sweep {
     let n = curve.len();
     let vertices: Vec<Vertex<M::Tangent>> = (0..n).map(|k| vertex(curve, k, beyond_ends)).collect();
-    let mut found = Sweep { reach: f64::INFINITY, rivals: vec![None; n], sparse: vec![None; n] };
-    let mut rival_distances = vec![f64::INFINITY; n];
-
+    let (unbounded, none) = (f64::INFINITY, vec![None; n]);
+    let mut found = Sweep {
+        reach: unbounded,
+        balls: vec![unbounded; n],
+        curvature_radius: unbounded,
+        rivals: none,
+        sparse: vec![None; n],
+    };
     // Neighbours first: they bound the reach, so that most other pairs are told by their distance alone.
     for (k, next) in (0..n).filter_map(|k| Some((k, curve.next(k)?))) {
         found.measure_ball(curve, &vertices[k], k, next);
         found.measure_ball(curve, &vertices[next], next, k);
     }
-    for i in 0..n {
-        for j in (i + 2)..n {
-            if curve.closed && i == 0 && j + 1 == n {
-                continue;
+    found.curvature_radius = found.reach;
+    let exact = n <= EXACT_REACH;
+    let positions: Vec<usize> = (0..n).collect();
+    let farther_than_sparse = if exact { 1.0 / LOCAL_EPSILON } else { THINNED_STEPS };
+    let wanted: Vec<f64> = vertices.iter().map(|v| farther_than_sparse * v.farther_gap).collect();
+    let rival_distances = vec![f64::INFINITY; n];
+    let mut search = Disputes { curve, vertices: &vertices, found, rival_distances, exact };
+    Runs::new(curve, &positions, &wanted).join(&mut search);
+    let mut found = search.found;
+    if !exact {
+        found.reach = thinned_reach(curve, &vertices, found.reach);
+    }
+    found
+}
+
+/// The reach of ever thinner curves, down to one that is searched pair by pair.
+fn thinned_reach<M: Manifold>(curve: &Curve<M>, vertices: &[Vertex<M::Tangent>], mut reach: f64) -> f64 {
+    for step in std::iter::successors(Some(2), |step| Some(2 * step)) {
+        let kept: Vec<usize> = (0..curve.len()).step_by(step).collect();
+        let coarse = kept.len() <= EXACT_REACH;
+        let gaps: Vec<f64> = kept.windows(2).map(|w| curve.distance(w[0], w[1])).collect();
+        let around = |k: usize| gaps[k.saturating_sub(1)..(k + 1).min(gaps.len())].iter().copied().fold(0.0, f64::max);
+        let wanted: Vec<f64> = (0..kept.len()).map(|k| THINNED_STEPS * around(k)).collect();
+        let mut search = SmallestBall { curve, vertices, reach, coarse };
+        Runs::new(curve, &kept, &wanted).join(&mut search);
+        reach = search.reach;
+        if coarse {
+            break;
+        }
+    }
+    reach
+}
+
+/// The search at full density.
+struct Disputes<'a, 'b, M: Manifold> {
+    curve: &'a Curve<'b, M>,
+    vertices: &'a [Vertex<M::Tangent>],
+    found: Sweep,
+    rival_distances: Vec<f64>,
+    exact: bool,
+}
+
+impl<M: Manifold> PairSearch for Disputes<'_, '_, M> {
+    fn everywhere(&self) -> f64 {
+        if self.exact { 2.0 * self.found.reach } else { 0.0 }
+    }
+    fn visit(&mut self, i: usize, j: usize, distance: f64) {
+        let Self { curve, vertices, found, .. } = self;
+        if curve.are_neighbours(i, j) {
+            return;
+        }
+        for (at, other) in [(i, j), (j, i)] {
+            let vertex = &vertices[at];
+            if distance < 2.0 * found.reach || LOCAL_EPSILON * distance < vertex.farther_gap {
+                found.measure_ball(curve, vertex, at, other);
             }
-            let distance = curve.distance(i, j);
-            for (at, other) in [(i, j), (j, i)] {
-                let vertex = &vertices[at];
-                if distance < 2.0 * found.reach || LOCAL_EPSILON * distance < vertex.farther_gap {
-                    found.measure_ball(curve, vertex, at, other);
-                }
-                let near = distance < vertex.farther_gap && distance < rival_distances[at];
-                if near && disputes(curve, vertex, at, other, distance) {
-                    rival_distances[at] = distance;
-                    found.rivals[at] = Some(other);
-                }
+            let near = distance < vertex.farther_gap && distance < self.rival_distances[at];
+            if near && disputes(curve, vertex, at, other, distance) {
+                self.rival_distances[at] = distance;
+                found.rivals[at] = Some(other);
             }
         }
     }
-    found
+}
+
+/// The search on a thinned curve, with the tangents of the full one.
+struct SmallestBall<'a, 'b, M: Manifold> {
+    curve: &'a Curve<'b, M>,
+    vertices: &'a [Vertex<M::Tangent>],
+    reach: f64,
+    coarse: bool,
+}
+
+impl<M: Manifold> PairSearch for SmallestBall<'_, '_, M> {
+    fn everywhere(&self) -> f64 {
+        if self.coarse { 2.0 * self.reach } else { 0.0 }
+    }
+    fn visit(&mut self, i: usize, j: usize, distance: f64) {
+        if distance < 2.0 * self.reach {
+            for (at, other) in [(i, j), (j, i)] {
+                let radius = self.vertices[at].tangent.and_then(|tangent| ball_radius(self.curve, tangent, at, other));
+                self.reach = self.reach.min(radius.unwrap_or(f64::INFINITY));
+            }
+        }
+    }
 }
 
 impl Sweep {
     fn measure_ball<M: Manifold>(&mut self, curve: &Curve<M>, vertex: &Vertex<M::Tangent>, at: usize, other: usize) {
         let Some(radius) = vertex.tangent.and_then(|tangent| ball_radius(curve, tangent, at, other)) else { return };
         self.reach = self.reach.min(radius);
+        self.balls[at] = self.balls[at].min(radius);
         let epsilon = vertex.farther_gap / (2.0 * radius);
         if epsilon > self.sparse[at].map_or(LOCAL_EPSILON, |(_, worst)| worst) {
             self.sparse[at] = Some((other, epsilon));

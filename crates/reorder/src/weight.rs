@@ -4,9 +4,9 @@ use petgraph::visit::EdgeRef;
 use se3_geom::{Manifold, PlanarTwist, Se2, Se3, Sim2, SimilarityTwist, Twist};
 
 use crate::error::OrderError;
+use crate::repair::TURNING;
 use crate::spanning_tree::minimum_spanning_tree;
 use crate::tour::{Effort, Problem, greedy, open_path};
-use crate::repair::TURNING;
 
 /// A space of rotations and translations whose metric weighs one against the other.
 pub trait Weighted: Manifold + Sized {
@@ -79,7 +79,9 @@ pub fn automatic_weight<M: Weighted>(points: &[M::Point]) -> Result<f64, OrderEr
     }
     let some: Vec<&M::Point> = points.iter().step_by(points.len().div_ceil(SPREAD_POINTS).max(1)).collect();
     let pairs = some.iter().enumerate().flat_map(|(k, &p)| some[k + 1..].iter().map(move |&q| (p, q)));
-    let Some(mut length) = ratio(pairs.filter_map(|(p, q)| Some(M::parts(&unit.log(p, q).ok()?)))) else { return Ok(1.0) };
+    let Some(mut length) = ratio(pairs.filter_map(|(p, q)| Some(M::parts(&unit.log(p, q).ok()?)))) else {
+        return Ok(1.0);
+    };
     for _ in 0..ROUNDS {
         let Some(metric) = M::with_metres_per_radian(length) else { return Ok(1.0) };
         let tree = minimum_spanning_tree(&metric, points)?;

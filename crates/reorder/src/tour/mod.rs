@@ -8,6 +8,8 @@ mod random;
 mod ring;
 mod search;
 mod start;
+#[cfg(test)]
+mod tests;
 
 use se3_geom::Manifold;
 
@@ -49,7 +51,11 @@ pub(crate) fn open_path<M: Manifold>(
 }
 
 /// A closed tour through all points, from the tour `start`.
-pub(crate) fn closed_tour<M: Manifold>(problem: &Problem<M>, turning: f64, start: Vec<usize>, effort: Effort) -> Vec<usize> {
+pub(crate) fn closed_tour<M: Manifold>(
+    problem: &Problem<M>,
+    turning: f64,
+    start: Vec<usize>,
+    effort: Effort,
+) -> Vec<usize> {
     Search::new(problem, turning, start).run(effort.kicks_per_node())
 }
-

@@ -24,6 +24,13 @@ pub(crate) struct Near<T> {
     log: Option<T>,
 }
 
+impl<T: Copy> Near<T> {
+    /// The tangent vector that leads there; `None` on the cut locus.
+    pub(crate) fn log(&self) -> Option<T> {
+        self.log
+    }
+}
+
 impl<'a, M: Manifold> Problem<'a, M> {
     /// O(n²) time, O(n) memory.
     pub(crate) fn new(manifold: &'a M, points: &'a [M::Point]) -> Self {

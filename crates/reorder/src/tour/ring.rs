@@ -22,6 +22,10 @@ impl Ring {
     pub(super) fn into_nodes(self) -> Vec<usize> {
         self.nodes
     }
+    #[cfg(test)]
+    pub(super) fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
     pub(super) fn node(&self, position: usize) -> usize {
         self.nodes[position % self.nodes.len()]
     }

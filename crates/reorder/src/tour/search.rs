@@ -87,6 +87,31 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         (0..self.problem.len()).filter(|&v| !is_settled(v)).collect()
     }
 
+    #[cfg(test)]
+    pub(super) fn nodes(&self) -> &[usize] {
+        self.ring.nodes()
+    }
+    #[cfg(test)]
+    pub(super) fn take_back(&mut self) {
+        self.ring.take_back();
+    }
+    /// Any exchange or swap of stretches, in either direction; the circle must have five nodes or more.
+    #[cfg(test)]
+    pub(super) fn random_move(&self, random: &mut Random) -> Move {
+        let n = self.ring.len();
+        let forward = random.below(2) == 0;
+        let start = self.ring.node(random.below(n));
+        let walk: Vec<usize> =
+            std::iter::successors(Some(start), |&v| Some(self.ring.step(v, forward))).take(n).collect();
+        let first = 1 + random.below(n - 3);
+        if random.below(2) == 0 {
+            return Move::Exchange([walk[0], walk[1], walk[first], walk[first + 1]]);
+        }
+        let second = first + 1 + random.below(n - 2 - first);
+        let nodes = [walk[0], walk[1], walk[first], walk[first + 1], walk[second], walk[second + 1]];
+        Move::Swap(nodes, random.below(2) == 0)
+    }
+
     /// Exchanges two stretches around v, improves there, and takes it all back unless it gained.
     fn kick(&mut self, v: usize, random: &mut Random) {
         let n = self.ring.len();
@@ -124,7 +149,8 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
             while self.ring.next(x) != o {
                 let y = self.ring.next(x);
                 let (ahead, behind) = (self.ring.count(z, x, true), self.ring.count(y, o, true));
-                let nodes = if ahead <= behind { [o, opening, opening, z, x, y] } else { [z, opening, opening, o, y, x] };
+                let nodes =
+                    if ahead <= behind { [o, opening, opening, z, x, y] } else { [z, opening, opening, o, y, x] };
                 if ahead.min(behind) + 3 <= self.ring.len() {
                     self.consider(Move::Swap(nodes, false), &mut best);
                 }
@@ -160,7 +186,7 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         }
     }
 
-    fn apply(&mut self, chosen: Move, touched: &mut Vec<usize>) {
+    pub(super) fn apply(&mut self, chosen: Move, touched: &mut Vec<usize>) {
         let nodes: &[usize] = match &chosen {
             Move::Exchange(nodes) => nodes,
             Move::Swap(nodes, _) => nodes,
@@ -220,7 +246,9 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
                 let z = self.ring.step(w, away);
                 let problem = self.problem;
                 let freed = problem.distance(o, v) + problem.distance(w, z) - problem.distance(o, z)
-                    + self.turns[o] + self.turns[v] + self.turns[z]
+                    + self.turns[o]
+                    + self.turns[v]
+                    + self.turns[z]
                     + if count > 1 { self.turns[w] } else { 0.0 };
                 for near in problem.near(v) {
                     if self.ring.count(v, near.node, away) <= count {

@@ -1,6 +1,8 @@
 //! Seeded randomness and curves with known order.
 #![allow(dead_code, reason = "every test binary uses its own part of it")]
 
+pub(crate) mod harmonics;
+
 use se3_geom::Pose;
 use se3_geom::nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -21,6 +23,11 @@ impl Random {
     /// Uniform in [-1, 1).
     pub(crate) fn signed(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+    /// Standard normal, by Box and Muller.
+    pub(crate) fn gauss(&mut self) -> f64 {
+        let [u, v] = [0.5 * (self.signed() + 1.0), 0.5 * (self.signed() + 1.0)];
+        (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
     }
     pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
