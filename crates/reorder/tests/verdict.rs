@@ -261,7 +261,7 @@ fn no_wrong_order_of_uneven_clean_samples_is_believed() {
         believed += usize::from(found.verdict > Verdict::Ambiguous);
         assert!(right || found.verdict == Verdict::Ambiguous, "trial {trial}");
     }
-    assert!(wrong > 5, "only {wrong} hard cases");
+    assert!(wrong > 1, "only {wrong} hard cases");
     assert!(believed > 3, "only {believed} believed");
 }
 
