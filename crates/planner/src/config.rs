@@ -73,6 +73,6 @@ impl Config {
     }
 
     pub(crate) fn ordering(&self) -> Options {
-        Options { topology: self.topology, start: self.start }
+        Options { topology: self.topology, start: self.start, ..Options::default() }
     }
 }

@@ -219,7 +219,10 @@ fn times_by_input(ordering: &Ordering, distinct: &[usize], knot_times_s: &[f64],
     }
     for group in &ordering.duplicates {
         let known = group.iter().map(|&i| times[i]).find(|t| t.is_finite()).unwrap_or(f64::NAN);
-        group.iter().for_each(|&i| times[i] = known);
+        // A repaired order may pass equal poses at different times: those have one already.
+        for &i in group {
+            times[i] = if times[i].is_nan() { known } else { times[i] };
+        }
     }
     times
 }

@@ -1,5 +1,6 @@
 //! The `reorder` command: orders poses, and plans trajectories through them.
 
+mod explain;
 mod failure;
 mod order;
 mod output;

@@ -1,13 +1,15 @@
 //! `reorder order`.
 
 use clap::{Args, ValueEnum};
-use planner::Config;
-use planner::reorder::{Options, OrderError, Ordering, TopologyChoice, Verdict, order, order_poses};
-use planner::se3_geom::{Pose, R2, R3, So3, xyzw_from_rotation};
+use planner::reorder::{
+    MethodChoice, Options, OrderError, Ordering, Repair, TopologyChoice, Verdict, Weight, order, order_weighted,
+};
+use planner::se3_geom::{Euclidean, Se2, Se3, Sim2, So3, Sphere};
 
+use crate::explain::explain;
 use crate::failure::Failure;
 use crate::output::print;
-use crate::source::{Manifold, Points, Source};
+use crate::source::{Manifold, Points, Rows, Source};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -16,9 +18,9 @@ pub(crate) struct Arguments {
     /// The space the points live in; told from the columns where it is not given
     #[arg(long)]
     manifold: Option<Manifold>,
-    /// How many metres count as much as one radian when poses are compared
-    #[arg(long, value_name = "L", default_value_t = Config::default().metres_per_radian)]
-    metres_per_radian: f64,
+    /// How many metres count as much as one radian when poses are compared: a number, or `auto` to tell it from the poses
+    #[arg(long, value_name = "L", default_value = "auto", value_parser = weight)]
+    metres_per_radian: Weight,
     /// How to order
     #[arg(long, default_value = "auto")]
     method: Method,
@@ -28,6 +30,15 @@ pub(crate) struct Arguments {
     /// Row (counted from 0) at which the order starts
     #[arg(long, value_name = "INDEX")]
     start: Option<usize>,
+    /// Search for a shorter and smoother order where the minimum spanning tree is none to trust
+    #[arg(long, default_value = "auto")]
+    repair: RepairChoice,
+    /// Move noisy points onto the line of their neighbours before they are ordered; what is handed on stays as it was
+    #[arg(long)]
+    denoise: bool,
+    /// Print what speaks for and against the order, for a person, in place of the order
+    #[arg(long, conflicts_with = "format")]
+    explain: bool,
     /// What to print
     #[arg(long, default_value = "json")]
     format: Format,
@@ -39,6 +50,24 @@ enum Method {
     Auto,
     /// Minimum spanning tree
     Mst,
+}
+
+/// As [`Repair`].
+#[derive(Clone, Copy, ValueEnum)]
+enum RepairChoice {
+    /// Up to 3000 points
+    Auto,
+    /// However long it takes
+    Always,
+    /// Never
+    Off,
+}
+
+fn weight(text: &str) -> Result<Weight, String> {
+    match text {
+        "auto" => Ok(Weight::Auto),
+        number => number.parse().map(Weight::MetresPerRadian).map_err(|_| "neither a number nor auto".to_owned()),
+    }
 }
 
 /// As [`TopologyChoice`].
@@ -70,11 +99,14 @@ enum Format {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let points = arguments.source.points(arguments.manifold)?;
-    let mut ordering = order_points(arguments, &points)
+    let rows = arguments.source.rows(arguments.manifold)?;
+    let mut ordering = order_points(arguments, &rows.points)
         .map_err(|error| Failure::BadInput(format!("{}: {error}", arguments.source.input.display())))?;
     // Without rotations and translations to weigh against each other, there is no weight that the order could hang on.
     ordering.weight_stable.get_or_insert(true);
+    if arguments.explain {
+        return print(&explain(&ordering));
+    }
     if ordering.verdict == Verdict::Ambiguous && !matches!(arguments.format, Format::Json) {
         // The other formats have no place for it, and an order that is in doubt must not pass for a sure one.
         let first = ordering.doubts.first().map_or("", |doubt| &doubt.why);
@@ -87,35 +119,46 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&match arguments.format {
         Format::Json => serde_json::to_string(&ordering).map_err(Failure::bad_input)? + "\n",
         Format::Indices => ordering.order.iter().map(|row| format!("{row}\n")).collect(),
-        Format::Csv => csv(&points, &ordering.order),
+        Format::Csv => csv(&rows, &ordering.order),
     })
 }
 
 fn order_points(arguments: &Arguments, points: &Points) -> Result<Ordering, OrderError> {
-    // Both mean the same as long as there is one method.
-    let (Method::Auto | Method::Mst) = arguments.method;
-    let options = Options { topology: arguments.topology.into(), start: arguments.start };
+    let options = Options {
+        topology: arguments.topology.into(),
+        start: arguments.start,
+        method: match arguments.method {
+            Method::Auto => MethodChoice::Auto,
+            Method::Mst => MethodChoice::Mst,
+        },
+        repair: match arguments.repair {
+            RepairChoice::Auto => Repair::Auto,
+            RepairChoice::Always => Repair::Always,
+            RepairChoice::Off => Repair::Off,
+        },
+        denoise: arguments.denoise,
+    };
+    let weight = arguments.metres_per_radian;
     match points {
-        Points::Plane(points) => order(&R2::default(), points, &options),
-        Points::Space(points) => order(&R3::default(), points, &options),
+        Points::Plane(points) => order(&Euclidean::<2>, points, &options),
+        Points::Space(points) => order(&Euclidean::<3>, points, &options),
+        Points::Flat4(points) => order(&Euclidean::<4>, points, &options),
+        Points::Flat5(points) => order(&Euclidean::<5>, points, &options),
+        Points::Flat6(points) => order(&Euclidean::<6>, points, &options),
+        Points::Flat7(points) => order(&Euclidean::<7>, points, &options),
+        Points::Flat8(points) => order(&Euclidean::<8>, points, &options),
+        Points::Sphere(points) => order(&Sphere, points, &options),
         Points::Rotations(points) => order(&So3, points, &options),
-        Points::Poses(points) => order_poses(points, arguments.metres_per_radian, &options),
+        Points::PlanarPoses(points) => order_weighted::<Se2>(points, weight, &options),
+        Points::Poses(points) => order_weighted::<Se3>(points, weight, &options),
+        Points::Similarities(points) => order_weighted::<Sim2>(points, weight, &options),
     }
 }
 
-fn csv(points: &Points, order: &[usize]) -> String {
-    let (header, rows): (&str, Vec<Vec<f64>>) = match points {
-        Points::Plane(p) => ("x,y", p.iter().map(|p| p.as_slice().to_vec()).collect()),
-        Points::Space(p) => ("x,y,z", p.iter().map(|p| p.as_slice().to_vec()).collect()),
-        Points::Rotations(r) => ("qx,qy,qz,qw", r.iter().map(|r| xyzw_from_rotation(r).to_vec()).collect()),
-        Points::Poses(p) => {
-            let row = |p: &Pose| [p.translation.vector.as_slice(), &xyzw_from_rotation(&p.rotation)].concat();
-            ("x,y,z,qx,qy,qz,qw", p.iter().map(row).collect())
-        }
-    };
-    let mut text = format!("{header}\n");
+fn csv(rows: &Rows, order: &[usize]) -> String {
+    let mut text = rows.columns.join(",") + "\n";
     for &i in order {
-        let fields: Vec<String> = rows[i].iter().map(f64::to_string).collect();
+        let fields: Vec<String> = rows.values[i].iter().map(f64::to_string).collect();
         text += &(fields.join(",") + "\n");
     }
     text

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use planner::se3_geom::nalgebra::{UnitQuaternion, Vector2, Vector3};
-use planner::se3_geom::{Pose, rotation_from_xyzw};
-use pose_bag::{PoseSet, Table, read_poses, read_table};
+use planner::se3_geom::nalgebra::{Isometry2, SVector, Similarity2, UnitQuaternion, Vector2, Vector3};
+use planner::se3_geom::{Pose, rotation_from_xyzw, xyzw_from_rotation};
+use pose_bag::{POSE_COLUMNS, PoseSet, Table, read_poses, read_table};
 
 use crate::failure::Failure;
 
@@ -28,19 +28,40 @@ pub(crate) enum Manifold {
     R2,
     /// Points in space: columns x, y, z
     R3,
-    /// Points in the plane or in space, as the columns say
+    /// Points of 2 to 8 dimensions: all columns but t
     Rn,
+    /// Points on a sphere: columns lat, lon in degrees
+    S2,
     /// Rotations: columns qx, qy, qz, qw
     So3,
+    /// Poses in the plane: columns x, y, theta in radians
+    Se2,
     /// Poses: columns x, y, z, qx, qy, qz, qw
     Se3,
+    /// Poses in the plane with a scale: columns x, y, theta, scale
+    Sim2,
 }
 
 pub(crate) enum Points {
     Plane(Vec<Vector2<f64>>),
     Space(Vec<Vector3<f64>>),
+    Flat4(Vec<SVector<f64, 4>>),
+    Flat5(Vec<SVector<f64, 5>>),
+    Flat6(Vec<SVector<f64, 6>>),
+    Flat7(Vec<SVector<f64, 7>>),
+    Flat8(Vec<SVector<f64, 8>>),
+    Sphere(Vec<Vector3<f64>>),
     Rotations(Vec<UnitQuaternion<f64>>),
+    PlanarPoses(Vec<Isometry2<f64>>),
     Poses(Vec<Pose>),
+    Similarities(Vec<Similarity2<f64>>),
+}
+
+/// Points, and the columns they were read from with every row of them.
+pub(crate) struct Rows {
+    pub(crate) points: Points,
+    pub(crate) columns: Vec<String>,
+    pub(crate) values: Vec<Vec<f64>>,
 }
 
 impl Source {
@@ -50,17 +71,32 @@ impl Source {
     }
 
     /// The points of a manifold; where none is named, of the richest one that the columns allow.
-    pub(crate) fn points(&self, manifold: Option<Manifold>) -> Result<Points, Failure> {
+    pub(crate) fn rows(&self, manifold: Option<Manifold>) -> Result<Rows, Failure> {
         if self.is_table() {
             let table = read_table(&self.input).map_err(Failure::bad_input)?;
-            return points_of_table(&table, manifold);
+            return rows_of_table(&table, manifold);
         }
         let poses = self.poses()?.poses;
-        Ok(match manifold {
-            None | Some(Manifold::Se3) => Points::Poses(poses),
-            Some(Manifold::So3) => Points::Rotations(poses.iter().map(|p| p.rotation).collect()),
-            Some(Manifold::R2) => Points::Plane(poses.iter().map(|p| p.translation.vector.xy()).collect()),
-            Some(Manifold::R3 | Manifold::Rn) => Points::Space(poses.iter().map(|p| p.translation.vector).collect()),
+        let values: Vec<Vec<f64>> = poses
+            .iter()
+            .map(|p| [p.translation.vector.as_slice(), &xyzw_from_rotation(&p.rotation)].concat())
+            .collect();
+        let (chosen, points) = match manifold {
+            None | Some(Manifold::Se3) => (0..7, Points::Poses(poses)),
+            Some(Manifold::So3) => (3..7, Points::Rotations(poses.iter().map(|p| p.rotation).collect())),
+            Some(Manifold::R2) => (0..2, Points::Plane(poses.iter().map(|p| p.translation.vector.xy()).collect())),
+            Some(Manifold::R3 | Manifold::Rn) => {
+                (0..3, Points::Space(poses.iter().map(|p| p.translation.vector).collect()))
+            }
+            Some(Manifold::S2 | Manifold::Se2 | Manifold::Sim2) => {
+                let sentence = format!("{}: poses in space are no points of that manifold", self.input.display());
+                return Err(Failure::BadInput(sentence));
+            }
+        };
+        Ok(Rows {
+            points,
+            columns: POSE_COLUMNS[chosen.clone()].iter().map(|&column| column.to_owned()).collect(),
+            values: values.into_iter().map(|row| row[chosen.clone()].to_vec()).collect(),
         })
     }
 
@@ -84,49 +120,108 @@ impl Source {
     }
 }
 
-fn points_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Points, Failure> {
+fn rows_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Rows, Failure> {
     let manifold = match manifold {
-        None | Some(Manifold::Rn) => manifold_of_columns(table, manifold.is_some())?,
+        None => manifold_of_columns(table)?,
         Some(named) => named,
     };
-    let select = |columns: &[&str]| table.select(columns).map_err(Failure::bad_input);
-    Ok(match manifold {
-        Manifold::R2 | Manifold::Rn => {
-            Points::Plane(select(&["x", "y"])?.iter().map(|r| Vector2::new(r[0], r[1])).collect())
-        }
-        Manifold::R3 => {
-            Points::Space(select(&["x", "y", "z"])?.iter().map(|r| Vector3::new(r[0], r[1], r[2])).collect())
-        }
-        Manifold::So3 => {
-            let rows = select(&["qx", "qy", "qz", "qw"])?;
-            let rotation = |(row, line): (&Vec<f64>, usize)| {
-                rotation_from_xyzw([row[0], row[1], row[2], row[3]])
-                    .map_err(|reason| Failure::BadInput(format!("{}, line {line}: {reason}", table.file())))
-            };
-            Points::Rotations(rows.iter().zip(table.line_numbers()).map(rotation).collect::<Result<_, _>>()?)
-        }
+    let columns = columns_of(table, manifold);
+    let values = table.select(&columns).map_err(Failure::bad_input)?;
+    let points = match manifold {
+        Manifold::R2 => Points::Plane(flat(&values)),
+        Manifold::R3 => Points::Space(flat(&values)),
+        Manifold::Rn => match columns.len() {
+            2 => Points::Plane(flat(&values)),
+            3 => Points::Space(flat(&values)),
+            4 => Points::Flat4(flat(&values)),
+            5 => Points::Flat5(flat(&values)),
+            6 => Points::Flat6(flat(&values)),
+            7 => Points::Flat7(flat(&values)),
+            8 => Points::Flat8(flat(&values)),
+            dimension => {
+                let (file, columns) = (table.file(), columns.join(", "));
+                return Err(Failure::BadInput(format!(
+                    "{file}: the {dimension} columns {columns} are not 2 to 8 coordinates"
+                )));
+            }
+        },
+        Manifold::S2 => Points::Sphere(checked(table, &values, direction)?),
+        Manifold::So3 => Points::Rotations(checked(table, &values, |row| {
+            rotation_from_xyzw([row[0], row[1], row[2], row[3]]).map_err(|reason| reason.to_string())
+        })?),
+        Manifold::Se2 => Points::PlanarPoses(values.iter().map(|row| planar_pose(row)).collect()),
         Manifold::Se3 => Points::Poses(table.poses().map_err(Failure::bad_input)?),
-    })
+        Manifold::Sim2 => Points::Similarities(checked(table, &values, |row| match row[3] {
+            scale if scale > 0.0 => Ok(Similarity2::from_isometry(planar_pose(row), scale)),
+            scale => Err(format!("scale is not positive: {scale}")),
+        })?),
+    };
+    Ok(Rows { points, columns: columns.into_iter().map(str::to_owned).collect(), values })
+}
+
+fn flat<const N: usize>(values: &[Vec<f64>]) -> Vec<SVector<f64, N>> {
+    values.iter().map(|row| SVector::from_column_slice(row)).collect()
+}
+
+fn planar_pose(row: &[f64]) -> Isometry2<f64> {
+    Isometry2::new(Vector2::new(row[0], row[1]), row[2])
+}
+
+/// Latitude and longitude in degrees; longitudes may go round more than once.
+fn direction(row: &Vec<f64>) -> Result<Vector3<f64>, String> {
+    let [latitude, longitude] = [row[0], row[1]];
+    if latitude.abs() > 90.0 {
+        return Err(format!("lat is beyond 90 degrees: {latitude}"));
+    }
+    let ((z, r), (y, x)) = (latitude.to_radians().sin_cos(), longitude.to_radians().sin_cos());
+    Ok(Vector3::new(r * x, r * y, z))
+}
+
+fn checked<P>(
+    table: &Table,
+    values: &[Vec<f64>],
+    point: impl Fn(&Vec<f64>) -> Result<P, String>,
+) -> Result<Vec<P>, Failure> {
+    let named = |(row, line): (&Vec<f64>, usize)| {
+        point(row).map_err(|reason| Failure::BadInput(format!("{}, line {line}: {reason}", table.file())))
+    };
+    values.iter().zip(table.line_numbers()).map(named).collect()
+}
+
+/// The columns of each manifold that is known by its columns; of flat spaces only those with named axes.
+const COLUMNS: [(&[&str], Manifold); 7] = [
+    (&["x", "y"], Manifold::R2),
+    (&["x", "y", "z"], Manifold::R3),
+    (&["lat", "lon"], Manifold::S2),
+    (&["qx", "qy", "qz", "qw"], Manifold::So3),
+    (&["x", "y", "theta"], Manifold::Se2),
+    (&POSE_COLUMNS, Manifold::Se3),
+    (&["x", "y", "theta", "scale"], Manifold::Sim2),
+];
+
+/// A column that is no coordinate unless it is asked for.
+const TIME: &str = "t";
+
+fn columns_of(table: &Table, manifold: Manifold) -> Vec<&str> {
+    match COLUMNS.iter().find(|(_, known)| *known == manifold) {
+        Some((columns, _)) => columns.to_vec(),
+        None => table.columns().iter().map(String::as_str).filter(|&column| column != TIME).collect(),
+    }
 }
 
 /// The manifold whose columns these are, all of them and no others but `t`: a column that nobody looks at could be the one that
 /// tells points apart.
-fn manifold_of_columns(table: &Table, flat_only: bool) -> Result<Manifold, Failure> {
-    let known: [(&[&str], Manifold); 4] = [
-        (&["x", "y"], Manifold::R2),
-        (&["x", "y", "z"], Manifold::R3),
-        (&["qx", "qy", "qz", "qw"], Manifold::So3),
-        (&["x", "y", "z", "qx", "qy", "qz", "qw"], Manifold::Se3),
-    ];
-    let present: Vec<&str> = table.columns().iter().map(String::as_str).filter(|&column| column != "t").collect();
+fn manifold_of_columns(table: &Table) -> Result<Manifold, Failure> {
+    let present: Vec<&str> = table.columns().iter().map(String::as_str).filter(|&column| column != TIME).collect();
     let is_all = |columns: &[&str]| columns.len() == present.len() && columns.iter().all(|c| present.contains(c));
-    let allowed = |manifold: Manifold| !flat_only || matches!(manifold, Manifold::R2 | Manifold::R3);
-    let found = known.iter().find(|(columns, manifold)| is_all(columns) && allowed(*manifold));
+    let found = COLUMNS.iter().find(|(columns, _)| is_all(columns));
     found.map(|&(_, manifold)| manifold).ok_or_else(|| {
         let (file, columns) = (table.file(), present.join(", "));
+        let known: Vec<String> = COLUMNS.iter().map(|(columns, _)| columns.join(",")).collect();
+        let known = known.join(" · ");
         Failure::BadInput(format!(
-            "{file}: the columns {columns} are not those of a manifold (x,y · x,y,z · qx,qy,qz,qw · x,y,z,qx,qy,qz,qw); \
-             name one with --manifold to use its columns and ignore the others"
+            "{file}: the columns {columns} are not those of a manifold ({known}); name one with --manifold to use its columns \
+             and ignore the others"
         ))
     })
 }

@@ -50,7 +50,16 @@ pub(crate) fn of_tree(tree: &Tree) -> Vec<Doubt> {
         .collect()
 }
 
-/// Every doubt about an order that follows the tree; `repeated` tells which rows stand for several equal points.
+/// What speaks against an order.
+#[derive(Default)]
+pub(crate) struct Doubts {
+    /// What no other order would mend.
+    pub(crate) firm: Vec<Doubt>,
+    /// What may come of a wrong order or of sparse samples: agreement of many searches answers it.
+    pub(crate) searchable: Vec<Doubt>,
+}
+
+/// Every doubt about an order of distinct points; `repeated` tells which rows stand for several equal points.
 /// Long, short and alternating gaps are no doubts where they are `explained`: dense samples that were thrown independently have them.
 pub(crate) fn of_curve<M: Manifold>(
     curve: &Curve<M>,
@@ -58,15 +67,24 @@ pub(crate) fn of_curve<M: Manifold>(
     found: &Sweep,
     repeated: &[bool],
     explained: bool,
-) -> Vec<Doubt> {
+) -> Doubts {
     let few = (3..FEWEST_POINTS).contains(&curve.len()).then(|| Doubt {
         at: curve.rows_at(0, curve.len() - 1),
         why: format!("{} distinct points are too few to tell one curve from another", curve.len()),
     });
     let interleaving = if explained { None } else { of_interleaving(curve, gaps) };
     let edges = (0..gaps.len()).flat_map(|k| of_gap(curve, gaps, repeated, k, explained));
-    let vertices = (0..curve.len()).flat_map(|k| of_vertex(curve, found, k));
-    few.into_iter().chain(interleaving).chain(edges).chain(vertices).collect()
+    // What comes near an end may be what follows it, which no search would tell.
+    let is_end = |k: usize| curve.previous(k).is_none() || curve.next(k).is_none();
+    let (ends, inner): (Vec<_>, Vec<_>) = (0..curve.len()).partition(|&k| is_end(k));
+    let of_vertices = |all: Vec<usize>| all.into_iter().flat_map(|k| of_vertex(curve, found, k)).collect::<Vec<_>>();
+    let firm = few.into_iter().chain(interleaving).chain(edges).chain(of_vertices(ends)).collect();
+    Doubts { firm, searchable: of_vertices(inner) }
+}
+
+/// The ends of an open curve, where they come near each other.
+pub(crate) fn of_ends(at: [usize; 2]) -> Doubt {
+    Doubt { at, why: "the ends come so near to each other that the curve may be closed".to_owned() }
 }
 
 /// A doubt at the middle of the first stretch that looks like two passes of a curve whose points fall between each other: gaps

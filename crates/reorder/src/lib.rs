@@ -80,10 +80,12 @@
 //! than 90° at both ends. Also closed where the gaps look like those of independent points, the closing gap is at most twice the
 //! longest, and the loop meets every condition of a certified order.
 
+mod agreement;
 mod certificate;
 mod components;
 mod crust;
 mod curve;
+mod denoise;
 mod doubts;
 mod drawing;
 mod duplicates;
@@ -96,11 +98,14 @@ mod order;
 mod ordering;
 mod poses;
 mod recovery;
+mod repair;
 mod smoothness;
 mod spanning_tree;
 mod sweep;
 mod topology;
+mod tour;
 mod walk;
+mod weight;
 
 pub use certificate::{Certificate, Condition};
 pub use components::{APART, Component, Components, FEWEST_OF_A_CURVE, Split, order_components, split};
@@ -109,9 +114,12 @@ pub use drawing::{Drawing, NoCurve, Strand};
 pub use error::OrderError;
 pub use nearest::nearest_chain;
 pub use nn_crust::nn_crust;
-pub use order::order;
-pub use ordering::{Doubt, Method, Options, Ordering, Topology, TopologyChoice, Verdict};
+pub use order::{MOST_REPAIRED_UNASKED, order};
+pub use ordering::{
+    Doubt, Method, MethodChoice, Options, Ordering, Repair, Repaired, Topology, TopologyChoice, Verdict,
+};
 pub use petgraph;
-pub use poses::order_poses;
+pub use poses::{order_poses, order_weighted};
 pub use spade;
 pub use spanning_tree::{Tree, minimum_spanning_tree};
+pub use weight::{Weight, Weighted, automatic_weight};

@@ -2,22 +2,29 @@
 
 use se3_geom::Manifold;
 
+use crate::agreement::{Variant, examine_sequence, of_trees};
 use crate::certificate::Certificate;
 use crate::curve::Curve;
-use crate::doubts;
+use crate::denoise::denoised;
+use crate::doubts::{self, Doubts};
 use crate::error::OrderError;
 use crate::independence::look_independent;
-use crate::ordering::{Doubt, Method, Options, Ordering, Topology, Verdict};
+use crate::ordering::{Method, MethodChoice, Options, Ordering, Repair, Repaired, Topology, Verdict};
 use crate::recovery::{Recovery, recover};
+use crate::repair::{Sequence, TURNING, sequence};
 use crate::sweep::sweep;
-use crate::topology::beyond_ends;
+use crate::topology::{beyond_ends, rotate_to};
+use crate::tour::Problem;
 
-/// Orders points sampled from a curve, by the exact minimum spanning tree under the manifold's own distance.
+/// Sets of more points are repaired only on demand: the searches would take minutes.
+pub const MOST_REPAIRED_UNASKED: usize = 3000;
+
+/// Orders points sampled from a curve, by the exact minimum spanning tree under the manifold's own distance, and by a short path
+/// of little turning where that tree is no order to trust.
 ///
-/// Where the tree is a path, that path is the order. Where it branches, the longest path is followed and side branches are walked
-/// where they leave it, so that every row still comes once; the verdict is then [`Verdict::Ambiguous`]. Equal points are
-/// merged first and come out next to each other. The verdict is [`Verdict::Plausible`] if nothing stands in
-/// [`Ordering::doubts`]; what may stand there is listed in the [crate documentation](crate#verdict).
+/// Where the tree is a path that nothing speaks against, that path is the order, and the verdict [`Verdict::Plausible`]. Elsewhere,
+/// unless [`Options::repair`] says otherwise, the order is repaired: see [`Method::Repaired`]. What may stand in
+/// [`Ordering::doubts`] is listed in the [crate documentation](crate#verdict).
 ///
 /// O(n²) time, O(n) memory. The neighbourhoods found do not depend on the order of the input, except between equal distances,
 /// where smaller rows win, nor on isometries of the manifold beyond rounding.
@@ -26,58 +33,183 @@ use crate::topology::beyond_ends;
 /// [`OrderError`]: fewer than two distinct points (three for a closed curve), coordinates that are not finite, a start that is out of
 /// range or no end of the open curve.
 pub fn order<M: Manifold>(manifold: &M, points: &[M::Point], options: &Options) -> Result<Ordering, OrderError> {
-    Ok(judge(manifold, points, recover(manifold, points, options)?))
+    order_among(manifold, &[], points, options)
 }
 
-pub(crate) fn judge<M: Manifold>(manifold: &M, points: &[M::Point], recovery: Recovery) -> Ordering {
-    let (certificate, doubts, verdict) = examine(manifold, points, &recovery);
-    let groups = recovery.distinct.groups;
-    let mut group_of = vec![0; points.len()];
-    for (k, group) in groups.iter().enumerate() {
-        group_of[group[0]] = k;
+/// As [`order`]; the order must be the same under every variant of the metric.
+pub(crate) fn order_among<M: Manifold>(
+    manifold: &M,
+    variants: &[Variant<M>],
+    points: &[M::Point],
+    options: &Options,
+) -> Result<Ordering, OrderError> {
+    if options.denoise {
+        return order_denoised(manifold, variants, points, options);
     }
-    let order: Vec<usize> = recovery.rows.iter().flat_map(|&row| &groups[group_of[row]]).copied().collect();
-    Ordering {
-        n: points.len(),
-        components: vec![order.clone()],
-        order,
-        topology: if recovery.closed { Topology::Closed } else { Topology::Open },
-        method: Method::Mst,
-        verdict,
-        weight_stable: None,
-        metres_per_radian: None,
-        duplicates: groups.into_iter().filter(|group| group.len() > 1).collect(),
-        certificate,
-        doubts,
+    let anywhere = Options { start: None, ..*options };
+    let recovery = recover(manifold, points, &anywhere, options.start)?;
+    let mut examined = examine_tree(manifold, points, &recovery);
+    let of_weight = of_trees(&recovery, variants, points, &anywhere)?;
+    let stable = of_weight.is_empty();
+    examined.doubts.searchable.extend(of_weight);
+    let weight_stable = |found: Option<bool>| (!variants.is_empty()).then_some(found.unwrap_or(stable));
+    let mendable = !examined.doubts.searchable.is_empty()
+        || recovery.distinct.groups.len() < points.len() && !examined.doubts.firm.is_empty();
+    if !mendable || !may_repair(points.len(), options) {
+        let recovery =
+            if options.start.is_some() { recover(manifold, points, options, options.start)? } else { recovery };
+        return Ok(examined.answer(points.len(), recovery, weight_stable(None)));
+    }
+    let problem = Problem::new(manifold, points);
+    let mut found = sequence(manifold, points, &problem, TURNING, &[], options.topology);
+    let name = recovery.names(points.len());
+    let agreement =
+        examine_sequence(manifold, variants, points, &problem, &found, &recovery.tree_edges(), &name, options);
+    let (before, after) = (recovery.tree_edges(), found.edges(&name));
+    if after == recovery.edges() {
+        examined.certified = false;
+        examined.doubts.searchable = agreement.doubts;
+        let recovery =
+            if options.start.is_some() { recover(manifold, points, options, options.start)? } else { recovery };
+        return Ok(examined.answer(points.len(), recovery, weight_stable(agreement.weight_stable)));
+    }
+    turn_to_start(&mut found, &name, options.start)?;
+    let mut examined = examine_repaired(manifold, points, &found, &name);
+    examined.doubts.searchable = agreement.doubts;
+    let mut answer = examined.answer(points.len(), recovery, weight_stable(agreement.weight_stable));
+    answer.topology = if found.closed { Topology::Closed } else { Topology::Open };
+    answer.order.clone_from(&found.rows);
+    answer.components = vec![found.rows];
+    answer.method = Method::Repaired;
+    answer.repaired = Some(Repaired { dropped: missing(&before, &after), added: missing(&after, &before) });
+    Ok(answer)
+}
+
+/// One round only: a second one would also pull bends straight.
+fn order_denoised<M: Manifold>(
+    manifold: &M,
+    variants: &[Variant<M>],
+    points: &[M::Point],
+    options: &Options,
+) -> Result<Ordering, OrderError> {
+    // Refuses what cannot be ordered before anything is measured.
+    recover(manifold, points, &Options { start: None, ..*options }, options.start)?;
+    let (onto_line, moved) = denoised(manifold, points, &Problem::new(manifold, points));
+    let mut found = order_among(manifold, variants, &onto_line, &Options { denoise: false, ..*options })?;
+    // What is certified are the moved points, not the curve that the given ones were sampled from.
+    found.verdict = found.verdict.min(Verdict::Plausible);
+    found.moved = moved;
+    Ok(found)
+}
+
+fn may_repair(count: usize, options: &Options) -> bool {
+    options.method == MethodChoice::Auto
+        && match options.repair {
+            Repair::Auto => count <= MOST_REPAIRED_UNASKED,
+            Repair::Always => true,
+            Repair::Off => false,
+        }
+}
+
+/// Edges of `these` that are not among `those`; both ascending.
+fn missing(these: &[(usize, usize)], those: &[(usize, usize)]) -> Vec<[usize; 2]> {
+    these.iter().filter(|edge| those.binary_search(edge).is_err()).map(|&(a, b)| [a, b]).collect()
+}
+
+fn turn_to_start(found: &mut Sequence, name: &[usize], start: Option<usize>) -> Result<(), OrderError> {
+    let (first, last) = (found.rows[0], found.rows[found.rows.len() - 1]);
+    match start {
+        _ if found.closed => rotate_to(&mut found.rows, start.unwrap_or(0)),
+        Some(start) if name[start] == name[first] => {}
+        Some(start) if name[start] == name[last] => found.rows.reverse(),
+        Some(start) => return Err(OrderError::StartNotAnEnd { start, ends: [first, last] }),
+        None if first > last => found.rows.reverse(),
+        None => {}
+    }
+    Ok(())
+}
+
+/// What is known about an order before the searches are compared.
+struct Examined {
+    certificate: Certificate,
+    certified: bool,
+    doubts: Doubts,
+}
+
+impl Examined {
+    /// The order of the tree, with the verdict.
+    fn answer(self, n: usize, recovery: Recovery, weight_stable: Option<bool>) -> Ordering {
+        let mut doubts = self.doubts.searchable;
+        doubts.extend(self.doubts.firm);
+        let groups = recovery.distinct.groups;
+        let mut group_of = vec![0; n];
+        for (k, group) in groups.iter().enumerate() {
+            group_of[group[0]] = k;
+        }
+        let order: Vec<usize> = recovery.rows.iter().flat_map(|&row| &groups[group_of[row]]).copied().collect();
+        Ordering {
+            n,
+            components: vec![order.clone()],
+            order,
+            topology: if recovery.closed { Topology::Closed } else { Topology::Open },
+            method: Method::Mst,
+            verdict: match (doubts.is_empty(), self.certified) {
+                (false, _) => Verdict::Ambiguous,
+                (true, false) => Verdict::Plausible,
+                (true, true) => Verdict::Certified,
+            },
+            weight_stable,
+            metres_per_radian: None,
+            duplicates: groups.into_iter().filter(|group| group.len() > 1).collect(),
+            certificate: self.certificate,
+            repaired: None,
+            moved: Vec::new(),
+            doubts,
+        }
     }
 }
 
-fn examine<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recovery) -> (Certificate, Vec<Doubt>, Verdict) {
+fn examine_tree<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recovery) -> Examined {
     let tree = &recovery.distinct.tree;
-    let mut doubts = doubts::of_tree(tree);
-    if !doubts.is_empty() {
+    let branches = doubts::of_tree(tree);
+    if !branches.is_empty() {
         let longest = tree.edge_weights().copied().fold(0.0, f64::max);
-        return (Certificate::of_no_curve(manifold, longest), doubts, Verdict::Ambiguous);
+        let certificate = Certificate::of_no_curve(manifold, longest);
+        let doubts = Doubts { firm: Vec::new(), searchable: branches };
+        return Examined { certificate, certified: false, doubts };
     }
-    let curve = Curve::new(manifold, points, &recovery.rows, recovery.closed);
-    let gaps = curve.gaps();
-    let found = sweep(&curve, beyond_ends(&gaps));
-    let certificate = Certificate::of_curve(&curve, &gaps, &found);
-    let certified = certificate.conditions(recovery.closed).iter().all(|condition| condition.holds);
     let mut repeated = vec![false; points.len()];
     for group in &recovery.distinct.groups {
         repeated[group[0]] = group.len() > 1;
     }
-    let explained = certified && look_independent(&gaps);
-    doubts.extend(doubts::of_curve(&curve, &gaps, &found, &repeated, explained));
-    if recovery.unsure_of_ends {
-        let why = "the ends come so near to each other that the curve may be closed".to_owned();
-        doubts.push(Doubt { at: curve.rows_at(0, curve.len() - 1), why });
+    let curve = Curve::new(manifold, points, &recovery.rows, recovery.closed);
+    examine_curve(&curve, &repeated, recovery.unsure_of_ends)
+}
+
+/// Equal points that stand together are one; where they stand apart, the curve passes there more than once.
+fn examine_repaired<M: Manifold>(manifold: &M, points: &[M::Point], found: &Sequence, name: &[usize]) -> Examined {
+    let mut rows = found.rows.clone();
+    rows.dedup_by_key(|row| name[*row]);
+    if found.closed && rows.len() > 1 && name[rows[0]] == name[rows[rows.len() - 1]] {
+        rows.pop();
     }
-    let verdict = match (doubts.is_empty(), certified) {
-        (false, _) => Verdict::Ambiguous,
-        (true, false) => Verdict::Plausible,
-        (true, true) => Verdict::Certified,
-    };
-    (certificate, doubts, verdict)
+    let mut times = vec![0_usize; points.len()];
+    rows.iter().for_each(|&row| times[name[row]] += 1);
+    let repeated: Vec<bool> = name.iter().map(|&name| times[name] > 1).collect();
+    examine_curve(&Curve::new(manifold, points, &rows, found.closed), &repeated, found.unsure_of_ends)
+}
+
+fn examine_curve<M: Manifold>(curve: &Curve<M>, repeated: &[bool], unsure_of_ends: bool) -> Examined {
+    let gaps = curve.gaps();
+    let found = sweep(curve, beyond_ends(&gaps));
+    let certificate = Certificate::of_curve(curve, &gaps, &found);
+    let certified = certificate.conditions(curve.closed).iter().all(|condition| condition.holds);
+    let explained = certified && look_independent(&gaps);
+    let mut doubts = doubts::of_curve(curve, &gaps, &found, repeated, explained);
+    if unsure_of_ends {
+        doubts.firm.push(doubts::of_ends(curve.rows_at(0, curve.len() - 1)));
+    }
+    // Nothing is certified that a doubt had to be taken back for.
+    let certified = certified && doubts.searchable.is_empty();
+    Examined { certificate, certified, doubts }
 }

@@ -33,6 +33,41 @@ pub enum TopologyChoice {
 pub enum Method {
     /// The minimum spanning tree, read as a path.
     Mst,
+    /// A path that is short and turns little: Σ d + λ Σ ‖log_p(previous) + log_p(next)‖ with λ = 3, made small by local search.
+    Repaired,
+}
+
+/// Which method shall find the order.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MethodChoice {
+    /// The minimum spanning tree, repaired where needed.
+    #[default]
+    Auto,
+    /// The minimum spanning tree and nothing else.
+    Mst,
+}
+
+/// Whether an order that something speaks against is sought again as a path that is short and turns little.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Repair {
+    /// Up to [`MOST_REPAIRED_UNASKED`](crate::MOST_REPAIRED_UNASKED) points.
+    #[default]
+    Auto,
+    /// However many points there are, and however long it takes.
+    Always,
+    /// Never.
+    Off,
+}
+
+/// How a repaired order differs from the minimum spanning tree. Equal points go by their first row.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Repaired {
+    /// Edges of the tree that the order does not follow.
+    pub dropped: Vec<[usize; 2]>,
+    /// Neighbours in the order that are none in the tree.
+    pub added: Vec<[usize; 2]>,
 }
 
 /// How far the order may be trusted; a later variant is a stronger claim.
@@ -57,6 +92,13 @@ pub struct Options {
     /// Without it an open curve starts at its end with the smaller row; a closed one at row 0, toward the neighbour with the
     /// smaller row.
     pub start: Option<usize>,
+    /// How the order is found.
+    pub method: MethodChoice,
+    /// Whether [`MethodChoice::Auto`] may repair.
+    pub repair: Repair,
+    /// Whether the points are noisy, and each is to be moved onto the principal line of its neighbours before they are ordered.
+    /// Never changes a point that is handed on: only the order comes from the moved ones, and a clean curve is better left alone.
+    pub denoise: bool,
 }
 
 /// A reason not to trust the order, and where.
@@ -92,17 +134,27 @@ pub struct Ordering {
     pub duplicates: Vec<Vec<usize>>,
     /// Sampling figures.
     pub certificate: Certificate,
+    /// What was repaired; `None` where nothing was.
+    pub repaired: Option<Repaired>,
+    /// How far each point was moved to find the order, by row; empty where [`Options::denoise`] was not asked for.
+    pub moved: Vec<f64>,
     /// Everything that speaks against the order.
     pub doubts: Vec<Doubt>,
 }
 
 impl Ordering {
-    /// The order with equal points merged into their first row: what a curve can be drawn through.
+    /// The order with equal points that stand together merged into the first of them: what a curve can be drawn through. A point
+    /// that a repaired order passes twice is there twice.
     pub fn distinct(&self) -> Vec<usize> {
-        let mut repeated = vec![false; self.n];
-        for &row in self.duplicates.iter().flat_map(|group| &group[1..]) {
-            repeated[row] = true;
+        let mut name: Vec<usize> = (0..self.n).collect();
+        for group in &self.duplicates {
+            group.iter().for_each(|&row| name[row] = group[0]);
         }
-        self.order.iter().copied().filter(|&row| !repeated[row]).collect()
+        let mut rows = self.order.clone();
+        rows.dedup_by_key(|row| name[*row]);
+        while self.topology == Topology::Closed && rows.len() > 1 && name[rows[0]] == name[rows[rows.len() - 1]] {
+            rows.pop();
+        }
+        rows
     }
 }

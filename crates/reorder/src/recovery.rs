@@ -1,6 +1,7 @@
 //! The order itself: tree, topology, start.
 
 use petgraph::graph::NodeIndex;
+use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
 
 use crate::certificate::closes;
@@ -25,8 +26,9 @@ pub(crate) fn recover<M: Manifold>(
     manifold: &M,
     points: &[M::Point],
     options: &Options,
+    wanted_start: Option<usize>,
 ) -> Result<Recovery, OrderError> {
-    let distinct = distinct_points(manifold, points, options)?;
+    let distinct = distinct_points(manifold, points, options.topology, wanted_start)?;
     let tree = &distinct.tree;
     let mut rows = rows_along(tree, far_end(tree));
     let path = Curve::new(manifold, points, &rows, false);
@@ -50,6 +52,24 @@ pub(crate) fn recover<M: Manifold>(
 }
 
 impl Recovery {
+    /// For every row the first row of those that hold the same point.
+    pub(crate) fn names(&self, count: usize) -> Vec<usize> {
+        let mut names = vec![0; count];
+        for group in &self.distinct.groups {
+            for &row in group {
+                names[row] = group[0];
+            }
+        }
+        names
+    }
+    /// The edges of the tree as (smaller row, greater row), ascending.
+    pub(crate) fn tree_edges(&self) -> Vec<(usize, usize)> {
+        let tree = &self.distinct.tree;
+        let rows = tree.edge_references().map(|edge| (tree[edge.source()], tree[edge.target()]));
+        let mut edges: Vec<_> = rows.map(|(a, b)| (a.min(b), a.max(b))).collect();
+        edges.sort_unstable();
+        edges
+    }
     /// The neighbours as (smaller row, greater row), ascending.
     pub(crate) fn edges(&self) -> Vec<(usize, usize)> {
         let closing = self.rows.last().zip(self.rows.first()).filter(|_| self.closed);
@@ -60,13 +80,18 @@ impl Recovery {
     }
 }
 
-fn distinct_points<M: Manifold>(manifold: &M, points: &[M::Point], options: &Options) -> Result<Distinct, OrderError> {
+fn distinct_points<M: Manifold>(
+    manifold: &M,
+    points: &[M::Point],
+    topology: TopologyChoice,
+    start: Option<usize>,
+) -> Result<Distinct, OrderError> {
     let count = points.len();
-    let needed = if options.topology == TopologyChoice::Closed { 3 } else { 2 };
+    let needed = if topology == TopologyChoice::Closed { 3 } else { 2 };
     if count < needed {
         return Err(OrderError::TooFewPoints { count, needed });
     }
-    if let Some(start) = options.start.filter(|&start| start >= count) {
+    if let Some(start) = start.filter(|&start| start >= count) {
         return Err(OrderError::StartOutOfRange { start, count });
     }
     let merged = merge(manifold, points, &minimum_spanning_tree(manifold, points)?);

@@ -10,7 +10,7 @@ use se3_geom::{Pose, R3};
 use support::helix_pose;
 
 fn refusal(points: &[Vector3<f64>], topology: TopologyChoice, start: Option<usize>) -> OrderError {
-    order(&R3::default(), points, &Options { topology, start }).unwrap_err()
+    order(&R3::default(), points, &Options { topology, start, ..Options::default() }).unwrap_err()
 }
 
 fn line(n: u32) -> Vec<Vector3<f64>> {

