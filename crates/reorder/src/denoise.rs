@@ -30,7 +30,7 @@ pub(crate) fn denoised<M: Manifold>(
 fn step_to_line<M: Manifold>(manifold: &M, p: &M::Point, problem: &Problem<M>, v: usize) -> Option<M::Tangent> {
     let logs: Vec<M::Tangent> = problem.near(v).iter().filter_map(|near| near.log()).collect();
     let first = *logs.first()?;
-    let zero = first - first;
+    let zero = first * 0.0;
     let around: Vec<M::Tangent> = std::iter::once(zero).chain(logs).collect();
     let lengths: Vec<f64> = around.iter().map(|&v| manifold.norm(p, v)).collect();
     let mean_length = lengths.iter().sum::<f64>() / (lengths.len() - 1) as f64;
