@@ -168,7 +168,7 @@ fn planar_pose(row: &[f64]) -> Isometry2<f64> {
 }
 
 /// Latitude and longitude in degrees; longitudes may go round more than once.
-fn direction(row: &Vec<f64>) -> Result<Vector3<f64>, String> {
+fn direction(row: &[f64]) -> Result<Vector3<f64>, String> {
     let [latitude, longitude] = [row[0], row[1]];
     if latitude.abs() > 90.0 {
         return Err(format!("lat is beyond 90 degrees: {latitude}"));
@@ -180,7 +180,7 @@ fn direction(row: &Vec<f64>) -> Result<Vector3<f64>, String> {
 fn checked<P>(
     table: &Table,
     values: &[Vec<f64>],
-    point: impl Fn(&Vec<f64>) -> Result<P, String>,
+    point: impl Fn(&[f64]) -> Result<P, String>,
 ) -> Result<Vec<P>, Failure> {
     let named = |(row, line): (&Vec<f64>, usize)| {
         point(row).map_err(|reason| Failure::BadInput(format!("{}, line {line}: {reason}", table.file())))
