@@ -99,6 +99,12 @@ impl Certificate {
         ]
     }
 
+    /// Whether the points look like a clean sample with ε up to 1.
+    pub(crate) fn is_dense_and_smooth(&self) -> bool {
+        let epsilon = self.usable_reach.map_or(0.0, |reach| self.required_reach / reach);
+        epsilon <= 1.0 && self.roughness <= 1.0 && self.zigzag <= ZIGZAG
+    }
+
     /// Figures where the order is no curve: nothing holds.
     pub(crate) fn of_no_curve<M: Manifold>(manifold: &M, max_gap: f64) -> Self {
         let injectivity_radius = finite(manifold.injectivity_radius());
