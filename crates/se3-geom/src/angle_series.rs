@@ -217,8 +217,8 @@ mod tests {
         for x in [0.0, 1e-200, 1e-12, 1e-7, 1e-5, 1e-3, 0.01, 0.1, 0.2, 0.24, 0.26, 0.5, 2.0, 3.9, 5.0, 9.0] {
             let d = inverse_jacobian_coefficient(x, HalfAngle::of_squared_angle(x).half_angle_by_tangent());
             let series = AngleSeries::at_squared_angle(x);
-            // Of sizes 0.08 to 0.2: a few of their roundings, and from the switch on two of e ≤ 1, divided by x.
-            let rounding = if x < INVERSE_SWITCH { 0.0 } else { 1.0 / x };
+            // Of sizes 0.08 to 0.2: a few of their roundings; from half a radian on also two of e ≤ 1, divided by x.
+            let rounding = if x < 0.25 { 0.0 } else { 1.0 / x };
             assert!((d + series.b_s / (2.0 * series.b)).abs() < f64::EPSILON * (0.5 + rounding), "{x}: {d}");
         }
     }

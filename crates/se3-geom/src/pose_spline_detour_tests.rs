@@ -75,7 +75,7 @@ fn rounding_of_positions_is_relative_to_them() {
         assert!(matches!(through(scale, 0.0), Err(SplineError::Overshoot { .. })), "scale {scale}");
     }
     for offset in [1.0, 1e3, 1e8] {
-        // Steps of a fifth to three roundings.
+        // Along x the steps are half a rounding, which comes to none or one.
         through(10.0 * f64::EPSILON * offset, offset).unwrap_or_else(|e| panic!("offset {offset}: {e}"));
     }
 }

@@ -212,9 +212,8 @@ impl Equations {
             defect[i] += segment.left_end(left, right, weight);
             defect[j] += segment.right_end(left, right, weight);
             let pull = segment.pull.norm();
-            let (left, right) = (left.norm(), right.norm());
-            terms[i] += pull + segment.stiffness * (2.0 * left + right);
-            terms[j] += pull + segment.stiffness * (left + 2.0 * right);
+            terms[i] += pull + 2.0 * segment.stiffness * left.norm();
+            terms[j] += pull + 2.0 * segment.stiffness * right.norm();
         }
         let relative = self.unknown.clone().map(|k| defect[k].norm() / terms[k]);
         // Not `max`, which drops what is not a number.

@@ -2,28 +2,6 @@
 
 use super::*;
 
-fn residual_of(turns: &[Vector3<f64>], lengths: &[f64], ends: [Vector3<f64>; 2]) -> Result<f64, f64> {
-    let segments = turns.iter().zip(lengths).map(|(theta, &h)| Segment::new(theta, h)).collect();
-    let knots = turns.len() + 1;
-    let equations = Equations { segments, knots, unknown: 1..knots - 1 };
-    let mut rates = vec![Vector3::zeros(); knots];
-    (rates[0], rates[knots - 1]) = (ends[0], ends[1]);
-    let mut solved = Trial::new(equations.solve(rates)?);
-    equations.evaluate(&mut solved, 1.0);
-    Ok(solved.worst)
-}
-
-/// The rate of a knot may vanish while its neighbours' do not: what rounding leaves there is relative to theirs.
-#[test]
-fn a_rate_that_vanishes_between_great_ones_is_solved() {
-    let great = Vector3::new(1.0, 0.3, 0.2);
-    for (first, second) in [(0.1, 0.3), (0.1, 0.7), (0.37, 0.11)] {
-        // ω₀/h₀ + ω₂/h₁ = 0 up to rounding, which is all that determines ω₁.
-        let ends = [great, great * (-second / first)];
-        residual_of(&[Vector3::zeros(); 2], &[first, second], ends).unwrap_or_else(|left| panic!("{first}: {left:e}"));
-    }
-}
-
 /// Newton with a poor matrix, here one without the couplings, converges slowly (its error shrinks by cos(π/(n + 1))/2 a step) and
 /// runs out of steps at defects of every size. Only what keeps far inside the promised 1e-11 may pass for a solution, and the
 /// others are refused with the defect that is left.
