@@ -211,6 +211,18 @@ mod tests {
         assert!((near.c - far.c).abs() < 2.0 * f64::EPSILON);
     }
 
+    /// d = −b_s/(2b), of functions that lose no digits at any angle.
+    #[test]
+    fn the_inverse_coefficient_keeps_its_digits() {
+        for x in [0.0, 1e-200, 1e-12, 1e-7, 1e-5, 1e-3, 0.01, 0.1, 0.2, 0.24, 0.26, 0.5, 2.0, 3.9, 5.0, 9.0] {
+            let d = inverse_jacobian_coefficient(x, HalfAngle::of_squared_angle(x).half_angle_by_tangent());
+            let series = AngleSeries::at_squared_angle(x);
+            // Of sizes 0.08 to 0.2: a few of their roundings; from half a radian on also two of e ≤ 1, divided by x.
+            let rounding = if x < 0.25 { 0.0 } else { 1.0 / x };
+            assert!((d + series.b_s / (2.0 * series.b)).abs() < f64::EPSILON * (0.5 + rounding), "{x}: {d}");
+        }
+    }
+
     #[test]
     fn half_angle_functions_equal_the_series() {
         for x in [1e-12, 0.1, 0.3, 2.0, 3.9, 4.1, 9.0, 20.0] {

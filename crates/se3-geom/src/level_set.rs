@@ -7,6 +7,27 @@ use crate::geodesic_search::{distance_without_log, shortest_geodesic};
 use crate::manifold::{LogError, Manifold};
 
 /// K equations F(x) = 0 in ℝᴺ with their first and second derivatives; DF must have rank K on the level set.
+///
+/// ```
+/// use se3_geom::{Constraint, LevelSet, Manifold, nalgebra::{RowVector2, Vector1, Vector2}};
+/// /// x² + 4y² = 1.
+/// struct Ellipse;
+/// impl Constraint<2, 1> for Ellipse {
+///     fn value(&self, x: &Vector2<f64>) -> Vector1<f64> {
+///         Vector1::new(x.x * x.x + 4.0 * x.y * x.y - 1.0)
+///     }
+///     fn jacobian(&self, x: &Vector2<f64>) -> RowVector2<f64> {
+///         RowVector2::new(2.0 * x.x, 8.0 * x.y)
+///     }
+///     fn second_derivative(&self, _: &Vector2<f64>, u: &Vector2<f64>, v: &Vector2<f64>) -> Vector1<f64> {
+///         Vector1::new(2.0 * u.x * v.x + 8.0 * u.y * v.y)
+///     }
+/// }
+/// let ellipse = LevelSet::new(Ellipse, 0.0); // no radius of injectivity is claimed
+/// let (vertex, co_vertex) = (Vector2::new(1.0, 0.0), Vector2::new(0.0, 0.5));
+/// let quarter = 1.211_056_027_568_459_5; // E(3/4), the complete elliptic integral
+/// assert!((ellipse.exp(&vertex, Vector2::new(0.0, quarter)) - co_vertex).norm() < 1e-10);
+/// ```
 pub trait Constraint<const N: usize, const K: usize> {
     /// F(x).
     fn value(&self, x: &SVector<f64, N>) -> SVector<f64, K>;

@@ -14,16 +14,15 @@ use crate::spline_error::{SplineError, check};
 use crate::spline_rates::{EndRates, spline_bends};
 use crate::twist::Twist;
 
+#[path = "pose_spline_detours.rs"]
+mod detours;
+
 /// How close to half a turn two successive rotations may come, in rad. Nearer than that rounding would choose the side.
 pub const HALF_TURN_MARGIN_RAD: f64 = 1e-9;
 
 /// By how much the angle that a segment turns through may exceed the angle between its two rotations at most, in rad. More
 /// means that the curve winds, which very uneven knots can cause.
 pub const WINDING_BOUND_RAD: f64 = PI;
-
-/// By how many times the largest step near a segment (its own or a neighbour's) its length may exceed its own step. A smooth
-/// curve exceeds it by per cents, one round a sharp corner by a fraction of the step, one that winds or overshoots by several.
-const DETOUR: f64 = 2.0;
 
 /// What holds at the ends of a [`PoseSpline`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -62,6 +61,21 @@ pub struct Motion {
 ///
 /// Left-invariant and symmetric: moving all poses by g moves the curve by g, reversing the poses reverses the curve. With
 /// clamped or periodic ends it is fourth order accurate in the knot spacing, its twist third, its acceleration second.
+///
+/// ```
+/// # use se3_geom::{centripetal_knots, pose_from_xyzw, Ends, PoseSpline, Se3};
+/// let poses = [
+///     pose_from_xyzw([0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0])?,
+///     pose_from_xyzw([0.1, 0.0, 0.0], [0.0, 0.0, 0.6, 0.8])?,
+///     pose_from_xyzw([0.1, 0.1, 0.0], [0.0, 0.0, 1.0, 0.0])?,
+/// ];
+/// let knots = centripetal_knots(&Se3::default(), &poses);
+/// let spline = PoseSpline::through(&poses, &knots, Ends::Natural)?;
+/// let [before, after] = [knots[1].next_down(), knots[1]].map(|t| spline.at(t));
+/// assert!((before.acceleration - after.acceleration).to_vector().norm() < 1e-11);
+/// assert!(spline.at(knots[2]).acceleration.to_vector().norm() < 1e-11);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct PoseSpline {
     knots: Vec<f64>,
@@ -102,50 +116,8 @@ impl PoseSpline {
             segments.push(Segment { position, rotation });
         }
         let spline = Self { knots: knots.to_vec(), segments, closed };
-        spline.refuse_detours(poses.len(), &steps, &turns)?;
+        spline.refuse_detours(poses, &steps, &turns)?;
         Ok(spline)
-    }
-
-    /// Refuses segments that go much farther than the poses between which they lead.
-    fn refuse_detours(&self, poses: usize, steps: &[Vector3<f64>], turns: &[Vector3<f64>]) -> Result<(), SplineError> {
-        for i in 0..steps.len() {
-            let largest_near = |parts: &[Vector3<f64>]| {
-                let near = i.saturating_sub(1)..(i + 2).min(parts.len());
-                parts[near].iter().map(|part| part.norm()).fold(0.0, f64::max)
-            };
-            let (distance_m, difference_rad) = (steps[i].norm(), turns[i].norm());
-            let (from, to) = (i, (i + 1) % poses);
-            let allowed_rad = (DETOUR * largest_near(turns)).min(WINDING_BOUND_RAD);
-            // Rounding of what was subtracted to get the parts.
-            let slack = 1e-9;
-            let most_rad = difference_rad + allowed_rad + slack;
-            let most_m = distance_m + DETOUR * largest_near(steps) + slack;
-            let (Segment { position, rotation }, h) = (&self.segments[i], self.knots[i + 1] - self.knots[i]);
-            if rotation.turned_at_most(h) <= most_rad && position.length_bound(h) <= most_m {
-                continue;
-            }
-            let [travelled_m, turned_rad] = self.lengths(i);
-            // Written so that NaN is refused.
-            let turns_little = turned_rad <= most_rad;
-            if !turns_little {
-                return Err(SplineError::Winding { from, to, turned_rad, difference_rad });
-            }
-            let goes_straight = travelled_m <= most_m;
-            if !goes_straight {
-                return Err(SplineError::Overshoot { from, to, travelled_m, distance_m });
-            }
-        }
-        Ok(())
-    }
-
-    /// Length of a segment's position and angle of its rotation, by the midpoint rule. Sixteen points measure to a few per cent
-    /// what the bounds must tell: whether the curve goes somewhere else.
-    fn lengths(&self, segment: usize) -> [f64; 2] {
-        const POINTS: usize = 16;
-        let step = (self.knots[segment + 1] - self.knots[segment]) / POINTS as f64;
-        let twist = |k: usize| self.in_segment(segment, (k as f64 + 0.5) * step).twist;
-        let add = |[p, r]: [f64; 2], twist: Twist| [p + twist.linear.norm() * step, r + twist.angular.norm() * step];
-        (0..POINTS).map(twist).fold([0.0; 2], add)
     }
 
     /// The parameter at every pose, increasing; on a closed curve also the one at which the first pose is reached again.
@@ -280,3 +252,7 @@ mod tests;
 #[cfg(test)]
 #[path = "pose_spline_edge_tests.rs"]
 mod edge_tests;
+
+#[cfg(test)]
+#[path = "pose_spline_detour_tests.rs"]
+mod detour_tests;

@@ -55,7 +55,7 @@ pub enum SplineError {
     },
     /// The spline turns much farther than the poses between which it leads.
     #[error(
-        "between poses {from} and {to} the spline turns {turned_rad:.3} rad for a difference of {difference_rad:.3} rad: the knots are too uneven"
+        "between poses {from} and {to} the spline turns {turned_rad:.3} rad for a difference of {difference_rad:.3} rad: the knots are too uneven (C2 to {residual:.1e})"
     )]
     Winding {
         /// First pose of the pair.
@@ -66,10 +66,12 @@ pub enum SplineError {
         turned_rad: f64,
         /// Angle between the two poses, in rad.
         difference_rad: f64,
+        /// What the C² conditions leave: the greatest jump of twist or acceleration at a knot, relative to the greatest at any.
+        residual: f64,
     },
     /// The spline goes much farther than the positions between which it leads.
     #[error(
-        "between poses {from} and {to} the spline goes {travelled_m:.3e} m for a distance of {distance_m:.3e} m: the knots are too uneven"
+        "between poses {from} and {to} the spline goes {travelled_m:.3e} m for a distance of {distance_m:.3e} m: the knots are too uneven (C2 to {residual:.1e})"
     )]
     Overshoot {
         /// First pose of the pair.
@@ -80,6 +82,8 @@ pub enum SplineError {
         travelled_m: f64,
         /// Distance of the two poses, in m.
         distance_m: f64,
+        /// What the C² conditions leave: the greatest jump of twist or acceleration at a knot, relative to the greatest at any.
+        residual: f64,
     },
 }
 

@@ -46,6 +46,15 @@ struct Segment {
 }
 
 impl Segment {
+    fn new(theta: &Vector3<f64>, h: f64) -> Self {
+        Self {
+            pull: theta * (6.0 / (h * h)),
+            stiffness: 2.0 / h,
+            carry: So3Group::adjoint(&So3Group::exp(theta * 0.5)) * (2.0 / h),
+            quadratic: QuadraticAcceleration::new(theta),
+        }
+    }
+
     /// Minus the body acceleration at the left end, N weighted: what the segment adds to the equation of its left knot.
     fn left_end(&self, left: &Vector3<f64>, right: &Vector3<f64>, weight: f64) -> Vector3<f64> {
         let linear = left * (2.0 * self.stiffness) + self.carry * right - self.pull;
@@ -104,12 +113,7 @@ pub(crate) fn spline_bends(
         rates[0] = first;
         rates[knots - 1] = last;
     }
-    let segments = turns.iter().zip(lengths).map(|(theta, &h)| Segment {
-        pull: theta * (6.0 / (h * h)),
-        stiffness: 2.0 / h,
-        carry: So3Group::adjoint(&So3Group::exp(theta * 0.5)) * (2.0 / h),
-        quadratic: QuadraticAcceleration::new(theta),
-    });
+    let segments = turns.iter().zip(lengths).map(|(theta, &h)| Segment::new(theta, h));
     let equations = Equations { segments: segments.collect(), knots, unknown };
     let rates = if equations.unknown.is_empty() { rates } else { equations.solve(rates)? };
     let accelerations: Vec<_> = (0..knots)
@@ -243,3 +247,7 @@ fn add_to_diagonal(block: &mut Matrix3<f64>, value: f64) {
         block[(k, k)] += value;
     }
 }
+
+#[cfg(test)]
+#[path = "spline_rates_tests.rs"]
+mod tests;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use se3_geom::nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
 use se3_geom::{
-    ArcLengthError, ByArcLength, CubicEnds, CubicSpline, Curve, Ends, Euclidean, Geodesic, LieGroup, Manifold,
+    ArcLengthError, Bezier, ByArcLength, CubicEnds, CubicSpline, Curve, Ends, Euclidean, Geodesic, LieGroup, Manifold,
     Parameterisation, Pose, PoseSpline, R2, R3, Screw, Se3, So3, So3Group, Twist, arc_length, curvature,
 };
 
@@ -97,4 +97,42 @@ fn standstill_is_refused_and_cusps_are_measured() {
     assert!((arc_length(&there_and_back, &Euclidean::<1>).unwrap() - 2.0).abs() < 1e-14);
     let refused = ByArcLength::new(&there_and_back, Euclidean::<1>);
     assert!(matches!(refused, Err(ArcLengthError::Standstill { parameter, .. }) if (parameter - 1.0).abs() < 1e-6));
+}
+
+/// x = (t − 0.3)³ on knots that miss 0.3 stands still there, within a piece and within every halving of it.
+#[test]
+fn an_inner_standstill_is_refused() {
+    let cube = |t: f64| Vector1::new((t - 0.3_f64).powi(3));
+    let knots = [0.0, 0.2, 0.55, 0.8, 1.0];
+    let spline = CubicSpline::through(&knots.map(cube), &knots, CubicEnds::NotAKnot).unwrap();
+    let stands_at_0_3 = |refused: ArcLengthError| {
+        // The speed, 3(t − 0.3)², is below rounding for |t − 0.3| < 1e-8.
+        matches!(refused, ArcLengthError::Standstill { parameter, speed } if (parameter - 0.3).abs() < 1e-7 && speed < 1e-12)
+    };
+    let refused = ByArcLength::new(&spline, Euclidean::<1>).unwrap_err();
+    assert!(stands_at_0_3(refused), "{refused}");
+
+    // A pose that slows down, stops and goes on: position and angle are both the cube, by its control points.
+    let controls = [-0.027, 0.063, -0.147, 0.343].map(|x| pose([x, 2.0 * x, 0.0], [0.0, 0.0, x]));
+    let stopping = Bezier::new(Se3::default(), controls).unwrap();
+    assert!(stopping.derivatives(0.3).velocity.to_vector().norm() < 1e-15);
+    let refused = ByArcLength::new(&stopping, Se3::default()).unwrap_err();
+    assert!(stands_at_0_3(refused), "{refused}");
+
+    // Slow is not still: a speed of 1e-4 of the mean has its parameter, and its derivatives the unit speed.
+    let slow = |t: f64| Vector2::new((t - 0.3_f64).powi(3), 1e-4 * t);
+    let slow = CubicSpline::through(&knots.map(slow), &knots, CubicEnds::NotAKnot).unwrap();
+    let slow = ByArcLength::new(&slow, R2::default()).unwrap();
+    assert!((slow.derivatives(0.027).velocity.norm() - 1.0).abs() < 1e-14);
+}
+
+/// x = t² − 0.6t turns at 0.3, which no halving meets: the kink of the speed is the hardest that quadrature has to do, and the
+/// length 0.09 + 0.49 is exact. Two ways agree to 1e-13 of the length there, and elsewhere to roundings.
+#[test]
+fn lengths_are_exact_to_the_tolerance() {
+    let knots = [0.0, 0.5, 1.0];
+    let turning = knots.map(|t| Vector1::new(t * t - 0.6 * t));
+    let turning = CubicSpline::through(&turning, &knots, CubicEnds::NotAKnot).unwrap();
+    let length = arc_length(&turning, &Euclidean::<1>).unwrap();
+    assert!((length - 0.58).abs() < 1e-13, "{length}");
 }

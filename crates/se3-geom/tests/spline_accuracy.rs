@@ -90,9 +90,12 @@ fn every_even_case_is_solved_and_smooth() {
 /// same smoothness or refused by name, and what turns as its knots are apart is mostly solved.
 #[test]
 fn uneven_knots_are_solved_or_refused() {
-    for (seed, ratio) in [(11, 10.0_f64), (12, 100.0), (13, 1e3)] {
+    // Solved when this was written: 291 and 42, 260 and 0, 254 and 0; the rest turns back or winds.
+    for (seed, ratio, [least_proportionate, least_regardless]) in
+        [(11, 10.0_f64, [290, 40]), (12, 100.0, [258, 0]), (13, 1e3, [252, 0])]
+    {
         let mut random = Random(seed);
-        for proportionate in [true, false] {
+        for (proportionate, least) in [(true, least_proportionate), (false, least_regardless)] {
             let mut solved = 0;
             for case in 0..300 {
                 let count = 4 + case % 12;
@@ -116,14 +119,16 @@ fn uneven_knots_are_solved_or_refused() {
                         assert!(jump <= 1e-11, "ratio {ratio}, case {case}: {jump:e}");
                     }
                     Err(SplineError::NotConverged { residual }) => assert!(residual > 1e-12, "refused at {residual:e}"),
-                    Err(SplineError::Winding { turned_rad, difference_rad, .. }) => {
-                        assert!(turned_rad > difference_rad);
+                    Err(SplineError::Winding { turned_rad, difference_rad, residual, .. }) => {
+                        assert!(turned_rad > difference_rad && residual <= 1e-11, "{residual:e}");
                     }
-                    Err(SplineError::Overshoot { travelled_m, distance_m, .. }) => assert!(travelled_m > distance_m),
+                    Err(SplineError::Overshoot { travelled_m, distance_m, residual, .. }) => {
+                        assert!(travelled_m > distance_m && residual <= 1e-11, "{residual:e}");
+                    }
                     Err(other) => panic!("{other}"),
                 }
             }
-            assert!(!proportionate || solved >= 200, "ratio {ratio}: {solved} of 300 solved");
+            assert!(solved >= least, "ratio {ratio}, proportionate {proportionate}: {solved} of 300 solved");
         }
     }
 }

@@ -79,13 +79,13 @@ where
     /// The curve with its length as parameter.
     ///
     /// # Errors
-    /// [`ArcLengthError`], also where the speed falls below a millionth of its mean.
+    /// [`ArcLengthError`], also where the least speed, between the nodes of quadrature too, is below a millionth of its mean.
     pub fn new(curve: C, metric: M) -> Result<Self, ArcLengthError> {
         let nodes = measure(&curve, &metric)?;
         let (first, last) = curve.domain();
         let length = nodes.last().map_or(0.0, |(_, length)| *length);
-        for &(parameter, _) in &nodes {
-            let speed = speed(&curve, &metric, parameter);
+        for piece in nodes.windows(2) {
+            let (parameter, speed) = slowest(&curve, &metric, piece[0].0, piece[1].0);
             let moves = speed > STANDSTILL * length / (last - first);
             if !moves {
                 return Err(ArcLengthError::Standstill { parameter, speed });
@@ -166,6 +166,43 @@ where
 {
     let at = curve.derivatives(t);
     metric.norm(&at.point, at.velocity)
+}
+
+/// Where the speed is least on a piece that eight points integrate, and how small it is there.
+///
+/// d‖ċ‖²/dt = 2⟨ċ, c̈⟩. On such a piece the speed is all but a polynomial of degree 15, which has seven minima at most: each of
+/// sixteen parts is searched for a slope that goes from falling to rising, and that is bisected to rounding.
+fn slowest<C, M>(curve: &C, metric: &M, from: f64, to: f64) -> (f64, f64)
+where
+    C: Curve<Point = M::Point, Tangent = M::Tangent>,
+    M: Manifold,
+{
+    const PARTS: u32 = 16;
+    let falls = |t: f64| {
+        let at = curve.derivatives(t);
+        metric.inner(&at.point, at.velocity, at.acceleration) < 0.0
+    };
+    // The last parameter before the end, where the derivatives are still those of this piece.
+    let place = |k: u32| (from + (to - from) * f64::from(k) / f64::from(PARTS)).min(to.next_down());
+    let minimum = |k: u32| {
+        let (mut low, mut high) = (place(k), place(k + 1));
+        let comes_to_a_minimum = falls(low) && !falls(high);
+        if !comes_to_a_minimum {
+            return low;
+        }
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return low;
+            }
+            if falls(middle) { low = middle } else { high = middle }
+        }
+    };
+    let candidates = (0..PARTS).map(minimum).chain([to]);
+    // Not by `min`, which drops what is not a number.
+    candidates
+        .map(|t| (t, speed(curve, metric, t)))
+        .fold((from, f64::INFINITY), |least, found| if found.1 >= least.1 { least } else { found })
 }
 
 /// Halves the pieces of the curve until eight points integrate each, and adds up.

@@ -6,6 +6,7 @@ use super::{Curve, Derivatives};
 use crate::group::{LieGroup, Se3Group};
 use crate::manifold::{LogError, Manifold};
 use crate::pose::Pose;
+use crate::so3::So3;
 use crate::twist::Twist;
 
 /// The geodesic c(t) = exp(p, t·v), t ∈ \[0, 1\], at constant speed ‖v‖ and without acceleration.
@@ -68,6 +69,17 @@ impl<M: Manifold> Curve for Geodesic<M> {
 ///
 /// The straight line of the *group* SE(3). It is no geodesic of [`Se3`](crate::Se3) unless axis and slide are parallel or one
 /// of them is missing: the tool's origin runs on a helix, Rᵀp″ = ω×v.
+///
+/// ```
+/// use se3_geom::{Curve, Screw, nalgebra::Vector3, pose_from_xyzw};
+/// // A quarter turn about the vertical axis through (1, 0, 0), rising by 0.5: the origin keeps its distance from the axis.
+/// let s = 0.5_f64.sqrt();
+/// let start = pose_from_xyzw([0.0; 3], [0.0, 0.0, 0.0, 1.0])?;
+/// let end = pose_from_xyzw([1.0, -1.0, 0.5], [0.0, 0.0, s, s])?;
+/// let halfway = Screw::between(start, end)?.point(0.5).translation.vector;
+/// assert!((halfway - Vector3::new(1.0 - s, -s, 0.25)).norm() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screw {
     start: Pose,
@@ -78,10 +90,11 @@ impl Screw {
     /// The screw motion from `start` to `end` that turns by less than half a turn.
     ///
     /// # Errors
-    /// [`LogError::CutLocus`] at half a turn, where two turn equally far.
+    /// [`LogError::CutLocus`] at half a turn, where two turn equally far; its distance is that angle, π rad.
+    /// [`LogError::NotAPoint`] where a coordinate is not finite.
     pub fn between(start: Pose, end: Pose) -> Result<Self, LogError> {
-        // The group's logarithm takes a side at half a turn; the product metric's tells.
-        crate::Se3::default().log(&start, &end)?;
+        // The group's logarithm takes a side at half a turn; that of the rotations' metric tells.
+        So3.log(&start.rotation, &end.rotation)?;
         let twist = Se3Group::log(&(start.inverse() * end)).map_err(|_| LogError::NotAPoint)?;
         Ok(Self { start, twist })
     }

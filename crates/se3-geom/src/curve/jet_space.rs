@@ -17,6 +17,18 @@ use crate::twist::Twist;
 /// A space with straight lines, differentiable in their ends: what de Casteljau's construction needs.
 ///
 /// [`Euclidean`], [`So3`] and [`Se3`] have their geodesics; [`Se3Group`] has screw motions.
+///
+/// ```
+/// use se3_geom::{Jet, JetSpace, R2, nalgebra::Vector2};
+/// // On the line from a moving point p(t) to q: p moves from (0, 0) to (1, 0), q rests at (0, 1); t of the way along.
+/// let (space, t) = (R2::default(), Jet::variable(0.25));
+/// let (rest, end) = (space.at_rest(&Vector2::zeros()), space.at_rest(&Vector2::x()));
+/// let p = space.between(&rest, &end, t);
+/// let along = space.derivatives(&space.between(&p, &space.at_rest(&Vector2::y()), t));
+/// // (t(1 − t), t) with its derivatives.
+/// assert_eq!(along.point, Vector2::new(0.1875, 0.25));
+/// assert_eq!((along.velocity, along.acceleration), (Vector2::new(0.5, 1.0), Vector2::new(-2.0, 0.0)));
+/// ```
 pub trait JetSpace {
     /// A point, as plain data.
     type Point: Clone + std::fmt::Debug;
@@ -33,7 +45,8 @@ pub trait JetSpace {
     /// Checks that one straight line joins `p` and `q`.
     ///
     /// # Errors
-    /// [`LogError::CutLocus`] where there are several, [`LogError::NotAPoint`] where a coordinate is not finite.
+    /// [`LogError::CutLocus`] where there are several (on [`Se3Group`] its distance is the rotation angle, π rad),
+    /// [`LogError::NotAPoint`] where a coordinate is not finite.
     fn joins(&self, p: &Self::Point, q: &Self::Point) -> Result<(), LogError>;
     /// A point at rest.
     fn at_rest(&self, p: &Self::Point) -> Self::PointJet;
@@ -178,7 +191,9 @@ impl JetSpace for Se3Group {
         Ok(p * Self::exp(v))
     }
     fn joins(&self, p: &Pose, q: &Pose) -> Result<(), LogError> {
-        Se3::default().joins(p, q)
+        // Rotations alone decide; the group has no distance to name.
+        have_logarithm(&So3, &p.rotation, &q.rotation)?;
+        Se3Group::log(&(p.inverse() * q)).map(|_| ()).map_err(|_| LogError::NotAPoint)
     }
     fn at_rest(&self, p: &Pose) -> PoseJet {
         PoseJet::constant(p)

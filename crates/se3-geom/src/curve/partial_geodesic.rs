@@ -16,6 +16,22 @@ use crate::twist::Twist;
 ///
 /// Positions are C². Rotations are not: the body rate is constant between poses and jumps at them. Where that matters take
 /// [`PoseSpline`](crate::PoseSpline).
+///
+/// ```
+/// use se3_geom::{CubicEnds, Curve, PartialGeodesic, pose_from_xyzw};
+/// let s = 0.5_f64.sqrt();
+/// let poses = [
+///     pose_from_xyzw([0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0])?,
+///     pose_from_xyzw([0.1, 0.0, 0.0], [0.0, 0.0, s, s])?,
+///     pose_from_xyzw([0.1, 0.1, 0.0], [0.0, 0.0, s, s])?,
+/// ];
+/// let curve = PartialGeodesic::through(&poses, &[0.0, 1.0, 2.0], CubicEnds::Natural)?;
+/// // A quarter turn at an even rate, then none.
+/// assert!((curve.point(0.5).rotation.angle() - 0.25 * std::f64::consts::PI).abs() < 1e-15);
+/// assert!(curve.derivatives(1.5).velocity.angular.norm() < 1e-15);
+/// assert!((curve.point(1.0).translation.vector - poses[1].translation.vector).norm() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct PartialGeodesic {
     positions: CubicSpline<3>,
