@@ -2,7 +2,7 @@
 //!
 //! Shooting (Newton's method on the end point) converges fast from a good start and finds any geodesic. Relaxation, which
 //! shortens a polygon between the points, converges slowly from any start and finds a local minimum. So: shoot; only if that
-//! proves nothing, relax many paths and shoot from both ends of each, the shortest first.
+//! proves nothing, relax many paths and let geodesics grow along each from both ends, the shortest first.
 //!
 //! What is shorter than the injectivity radius is the shortest geodesic. **Beyond, it is the best that was found.** The paths are
 //! the same for log(p, q) and for log(q, p), so that both find geodesics of the same length.
@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::geodesic_flow::{Connection, flow};
 use crate::manifold::LogError;
-use crate::path_relaxation::{Polygon, relaxed_polygons};
+use crate::path_relaxation::{Polygon, SEGMENTS, relaxed_polygons};
 
 /// A shot that ends this close to the goal, relative to the coordinates and the length, has arrived. The flow's own error is
 /// 1e-13 a step and grows along the geodesic.
@@ -23,9 +23,12 @@ const SAME_VELOCITY: f64 = 1e-6;
 /// Lengths that agree to this part decide nothing: the square root of the flow's accuracy would be 3e-7, shots are better.
 const SAME_LENGTH: f64 = 1e-9;
 const MOST_SHOTS: usize = 40;
-/// Polygons are off by a few per cent in energy where the space bends within a segment. One above the best geodesic by more
-/// leads to no shorter one.
-const HOPELESS: f64 = 1.2;
+/// Polygons are off by a few per cent where the space bends within a segment. One longer than the best geodesic by more leads to
+/// no shorter one.
+const HOPELESS: f64 = 1.1;
+/// In so many stages a geodesic grows along a polygon. Each starts close to its goal, as one shot at the end of a long geodesic
+/// does not: there the first digits of the velocity are not enough.
+const STAGES: usize = 8;
 
 /// The initial velocity of the shortest geodesic from p to q that was found.
 pub(crate) fn shortest_geodesic<const N: usize>(
@@ -43,15 +46,14 @@ pub(crate) fn shortest_geodesic<const N: usize>(
     let mut search = Search { space, p, q, found: Vec::new(), least_miss: f64::INFINITY, shots: 0 };
     // Within the injectivity radius there is one geodesic only. On its rim rounding decides nothing.
     let is_proven = |length: f64| length < injectivity_radius * (1.0 - SAME_LENGTH);
-    search.shoot_from_p(&(q - p));
+    search.take_from_p(shoot(space, p, q, space.project_tangent(p, &(q - p))));
     if !is_proven(search.least_length()) {
-        search.shoot_from_q(&(p - q));
+        search.take_from_q(shoot(space, q, p, space.project_tangent(q, &(p - q))));
     }
     if !is_proven(search.least_length()) {
         for polygon in polygons_between(space, p, q) {
-            if polygon.energy < HOPELESS * search.least_length().powi(2) {
-                search.shoot_from_p(&polygon.leaving_start);
-                search.shoot_from_q(&polygon.leaving_end);
+            if polygon.length < HOPELESS * search.least_length() {
+                search.shoot_along(&polygon.path);
             }
         }
     }
@@ -94,7 +96,7 @@ fn polygons_between<const N: usize>(
     let (start, end) = in_order(p, q);
     let mut polygons = relaxed_polygons(space, start, end);
     if start != p {
-        polygons.iter_mut().for_each(Polygon::turn_round);
+        polygons.iter_mut().for_each(|polygon| polygon.path.reverse());
     }
     polygons
 }
@@ -111,27 +113,27 @@ struct Search<'a, S, const N: usize> {
 }
 
 impl<S: Connection<N>, const N: usize> Search<'_, S, N> {
-    fn shoot_from_p(&mut self, velocity: &SVector<f64, N>) {
-        let shot = shoot(self.space, self.p, self.q, self.space.project_tangent(self.p, velocity));
-        self.shots += 1;
-        self.take(shot);
+    /// Geodesics that follow a path, from either end.
+    fn shoot_along(&mut self, path: &[SVector<f64, N>]) {
+        self.take_from_p(grow(self.space, path));
+        let back: Vec<_> = path.iter().rev().copied().collect();
+        self.take_from_q(grow(self.space, &back));
     }
 
-    /// A geodesic from q to p is one from p to q, whose velocity is minus that on arrival.
-    fn shoot_from_q(&mut self, velocity: &SVector<f64, N>) {
-        let shot = shoot(self.space, self.q, self.p, self.space.project_tangent(self.q, velocity)).and_then(|v| {
-            let [_, arrival] = flow(self.space, [*self.q, v]).ok_or(f64::INFINITY)?;
-            shoot(self.space, self.p, self.q, -arrival)
-        });
+    fn take_from_p(&mut self, shot: Result<SVector<f64, N>, f64>) {
         self.shots += 1;
-        self.take(shot);
-    }
-
-    fn take(&mut self, shot: Result<SVector<f64, N>, f64>) {
         match shot {
             Ok(v) => self.found.push((length(self.space, self.p, &v), v)),
             Err(miss) => self.least_miss = self.least_miss.min(miss),
         }
+    }
+
+    /// A geodesic from q to p is one from p to q, whose velocity is minus that on arrival.
+    fn take_from_q(&mut self, shot: Result<SVector<f64, N>, f64>) {
+        self.take_from_p(shot.and_then(|v| {
+            let [_, arrival] = flow(self.space, [*self.q, v]).ok_or(f64::INFINITY)?;
+            shoot(self.space, self.p, self.q, -arrival)
+        }));
     }
 
     fn least_length(&self) -> f64 {
@@ -149,6 +151,15 @@ impl<S: Connection<N>, const N: usize> Search<'_, S, N> {
         }
         Ok(*v)
     }
+}
+
+/// The geodesic from the start of a path to its end that follows it; `Err` carries the miss of the stage that failed.
+fn grow<const N: usize>(space: &impl Connection<N>, path: &[SVector<f64, N>]) -> Result<SVector<f64, N>, f64> {
+    let nodes_a_stage = SEGMENTS / STAGES;
+    (1..=STAGES).try_fold(path[nodes_a_stage] - path[0], |v, stage| {
+        let longer = v * if stage > 1 { stage as f64 / (stage - 1) as f64 } else { 1.0 };
+        shoot(space, &path[0], &path[stage * nodes_a_stage], space.project_tangent(&path[0], &longer))
+    })
 }
 
 /// Newton's method with a halving line search for exp(p, v) = q; `Err` carries the least miss.

@@ -6,37 +6,27 @@ use nalgebra::SVector;
 
 use crate::geodesic_flow::Connection;
 
-const SEGMENTS: usize = 32;
-const MOST_RELAXATIONS: usize = 300;
-/// How paths swing out before they are pulled tight: half waves, and how far as a part of the distance of the two points.
-const SWINGS: [(f64, f64); 5] = [(1.0, 0.25), (1.0, 0.5), (1.0, 1.0), (2.0, 0.25), (3.0, 0.25)];
-/// Polygons whose velocities agree to this part at both ends are the same geodesic, and stopped at slightly different places.
+pub(crate) const SEGMENTS: usize = 32;
+const MOST_RELAXATIONS: usize = 100;
+/// How far paths swing out in one half wave before they are pulled tight, and in two, as parts of the distance of the two points.
+/// Every one with every other, so that they pass obstacles on all sides.
+const BOWS: [f64; 7] = [0.0, 0.25, -0.25, 0.5, -0.5, 1.0, -1.0];
+const WEAVES: [f64; 3] = [0.0, 0.25, -0.25];
+/// Polygons that agree to this part of the distance of the two points are the same geodesic, and stopped at slightly different
+/// places.
 const SAME_POLYGON: f64 = 1e-2;
 
 /// A path of straight pieces, as short as can be in its neighbourhood.
 pub(crate) struct Polygon<const N: usize> {
-    /// Its squared length, if evenly divided.
-    pub(crate) energy: f64,
-    /// Velocity at its start, for unit time.
-    pub(crate) leaving_start: SVector<f64, N>,
-    /// Velocity at its end, backwards.
-    pub(crate) leaving_end: SVector<f64, N>,
+    /// Its length, if evenly divided; a little more, if not.
+    pub(crate) length: f64,
+    pub(crate) path: Vec<SVector<f64, N>>,
 }
 
 impl<const N: usize> Polygon<N> {
-    fn of(energy: f64, path: &[SVector<f64, N>]) -> Self {
-        let slope = |[a, b, c]: [SVector<f64, N>; 3]| (b * 4.0 - a * 3.0 - c) * (0.5 * SEGMENTS as f64);
-        let leaving_end = slope([path[SEGMENTS], path[SEGMENTS - 1], path[SEGMENTS - 2]]);
-        Self { energy, leaving_start: slope([path[0], path[1], path[2]]), leaving_end }
-    }
-
-    pub(crate) fn turn_round(&mut self) {
-        std::mem::swap(&mut self.leaving_start, &mut self.leaving_end);
-    }
-
     fn is_like(&self, other: &Self) -> bool {
-        let alike = |u: &SVector<f64, N>, v: &SVector<f64, N>| (u - v).norm() <= SAME_POLYGON * v.norm();
-        alike(&self.leaving_start, &other.leaving_start) && alike(&self.leaving_end, &other.leaving_end)
+        let apart = self.path.iter().zip(&other.path).map(|(x, y)| (x - y).norm());
+        apart.fold(0.0, f64::max) <= SAME_POLYGON * (self.path[SEGMENTS] - self.path[0]).norm()
     }
 }
 
@@ -48,26 +38,27 @@ pub(crate) fn relaxed_polygons<const N: usize>(
     q: &SVector<f64, N>,
 ) -> Vec<Polygon<N>> {
     let chord = q - p;
-    let mut swings = vec![(0.0, SVector::zeros())];
+    let mut swings = vec![[SVector::zeros(); 2]];
     for side in sides(space, p, &chord) {
-        let both_ways =
-            |(half_waves, part): (f64, f64)| [part, -part].map(|part| (half_waves, side * (part * chord.norm())));
-        swings.extend(SWINGS.into_iter().flat_map(both_ways));
+        let across = side * chord.norm();
+        let swing = |bow: f64, weave: f64| [across * bow, across * weave];
+        let both = BOWS.into_iter().flat_map(|bow| WEAVES.into_iter().map(move |weave| (bow, weave)));
+        swings.extend(both.skip(1).map(|(bow, weave)| swing(bow, weave)));
     }
-    let start = |(half_waves, swing): &(f64, SVector<f64, N>)| -> Option<Vec<SVector<f64, N>>> {
+    let start = |[bow, weave]: &[SVector<f64, N>; 2]| -> Option<Vec<SVector<f64, N>>> {
         let node = |i: usize| match i {
             0 => Some(*p),
             SEGMENTS => Some(*q),
             _ => {
                 let t = i as f64 / SEGMENTS as f64;
-                space.project(&(p + chord * t + swing * (half_waves * PI * t).sin()))
+                space.project(&(p + chord * t + bow * (PI * t).sin() + weave * (2.0 * PI * t).sin()))
             }
         };
         (0..=SEGMENTS).map(node).collect()
     };
     let mut relaxed: Vec<Polygon<N>> = swings.iter().filter_map(start).map(|path| relax(space, path)).collect();
-    relaxed.retain(|polygon| polygon.energy.is_finite());
-    relaxed.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+    relaxed.retain(|polygon| polygon.length.is_finite());
+    relaxed.sort_by(|a, b| a.length.total_cmp(&b.length));
     let mut different: Vec<Polygon<N>> = Vec::new();
     for polygon in relaxed {
         if !different.iter().any(|other| polygon.is_like(other)) {
@@ -116,11 +107,11 @@ fn relax<const N: usize>(space: &impl Connection<N>, mut path: Vec<SVector<f64, 
         (path, now) = (trial, energy);
         step = (2.0 * accepted).min(1.0);
         // The polygon itself is off by 1/SEGMENTS² ≈ 1e-3: more digits of it would help no shot.
-        if gain < 1e-7 * now {
+        if gain < 1e-6 * now {
             break;
         }
     }
-    Polygon::of(now, &path)
+    Polygon { length: (now * SEGMENTS as f64).sqrt(), path }
 }
 
 /// Σ Δxᵀ·g·Δx with the metric in the middle of each segment; its minimum is the geodesic, evenly divided.
