@@ -18,6 +18,8 @@ use crate::path_relaxation::{Polygon, SEGMENTS, relaxed_polygons};
 const ARRIVED: f64 = 1e-11;
 /// A miss of a few roundings, which another step would not lessen but for luck.
 const FLOOR: f64 = 16.0 * f64::EPSILON;
+/// Where a geodesic has more stages to grow, it need not come closer than this.
+const UNDERWAY: f64 = 1e-4;
 /// Two geodesics are the same if their velocities agree to this part: Newton's method separates them by far more.
 const SAME_VELOCITY: f64 = 1e-6;
 /// Lengths that agree to this part decide nothing: the square root of the flow's accuracy would be 3e-7, shots are better.
@@ -158,7 +160,8 @@ fn grow<const N: usize>(space: &impl Connection<N>, path: &[SVector<f64, N>]) ->
     let nodes_a_stage = SEGMENTS / STAGES;
     (1..=STAGES).try_fold(path[nodes_a_stage] - path[0], |v, stage| {
         let longer = v * if stage > 1 { stage as f64 / (stage - 1) as f64 } else { 1.0 };
-        shoot(space, &path[0], &path[stage * nodes_a_stage], space.project_tangent(&path[0], &longer))
+        let precision = if stage < STAGES { UNDERWAY } else { FLOOR };
+        shoot_within(precision, space, &path[0], &path[stage * nodes_a_stage], space.project_tangent(&path[0], &longer))
     })
 }
 
@@ -169,12 +172,22 @@ fn shoot<const N: usize>(
     q: &SVector<f64, N>,
     start: SVector<f64, N>,
 ) -> Result<SVector<f64, N>, f64> {
+    shoot_within(FLOOR, space, p, q, start)
+}
+
+fn shoot_within<const N: usize>(
+    precision: f64,
+    space: &impl Connection<N>,
+    p: &SVector<f64, N>,
+    q: &SVector<f64, N>,
+    start: SVector<f64, N>,
+) -> Result<SVector<f64, N>, f64> {
     let end = |v: SVector<f64, N>| flow(space, [*p, v]).map(|[end, _]| end);
     let mut v = start;
     let mut reached = end(v).ok_or(f64::INFINITY)?;
     for _ in 0..MOST_SHOTS {
         let miss = (q - reached).norm();
-        if miss <= FLOOR * (p.norm() + q.norm()) {
+        if miss <= precision * (p.norm() + q.norm()) {
             break;
         }
         let Some(step) = newton_step(space, p, &v, &reached, &(q - reached), end) else { break };
@@ -186,7 +199,7 @@ fn shoot<const N: usize>(
         (v, reached) = better;
     }
     let miss = (q - reached).norm();
-    if miss <= ARRIVED * (p.norm() + q.norm() + v.norm()) { Ok(v) } else { Err(miss) }
+    if miss <= precision.max(ARRIVED) * (p.norm() + q.norm() + v.norm()) { Ok(v) } else { Err(miss) }
 }
 
 /// The tangent δ at p for which exp(p, v + δ) comes `miss` further, by Jacobi fields from forward differences.
