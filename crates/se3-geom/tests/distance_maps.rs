@@ -209,7 +209,6 @@ fn rough_surfaces_have_distances_too() {
 /// 0.3 is the node in column 3 although 0.3/0.1 is less than 3 in numbers: the hole that ends there does not swallow it.
 #[test]
 fn a_point_meant_to_lie_on_a_line_lies_on_it() {
-    assert!(0.3 / 0.1 < 3.0);
     let height = |x: f64, _: f64| if (x - 0.2).abs() < 0.01 { f64::NAN } else { x };
     let grid = SurfaceGrid::sample(v(0.0, 0.0), v(0.4, 1.0), [5, 3], height).unwrap();
     assert!((grid.embed(&v(0.3, 0.7)).unwrap() - Vector3::new(0.3, 0.7, 0.3)).norm() < 1e-15);
