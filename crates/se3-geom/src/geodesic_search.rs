@@ -5,7 +5,7 @@
 //! proves nothing, relax many paths and let geodesics grow along each from both ends, the shortest first.
 //!
 //! What is shorter than the injectivity radius is the shortest geodesic. **Beyond, it is the best that was found.** The paths are
-//! the same for log(p, q) and for log(q, p), so that both find geodesics of the same length.
+//! the same for log(p, q) and for log(q, p), so that both find the same geodesic unless the last shot from one end fails.
 
 use nalgebra::{SMatrix, SVector};
 

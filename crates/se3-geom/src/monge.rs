@@ -35,8 +35,9 @@ pub struct HeightJet {
 /// `exp` and `transport` integrate these equations to a relative error of 1e-13 a step. `log` shoots: Newton's method on the end
 /// point, first from the straight line of the plane. A geodesic shorter than the injectivity radius is the shortest. Where none was
 /// found, 21 straight, bowed and weaving paths are shortened (relaxation), shots follow each from both ends, and the shortest
-/// geodesic of all is returned, as long from p to q as from q to p: **beyond the injectivity radius that is the best found, not a
-/// proven minimum**, and [`LogError::CutLocus`] says that two of those found are equally long. To know which it is, compare
+/// geodesic of all is returned, from p to q and from q to p the same unless the last shot from one end fails: **beyond the
+/// injectivity radius that is the best found, not a proven minimum**, and [`LogError::CutLocus`] says that two of those found are
+/// equally long. To know which it is, compare
 /// `norm(p, v)` with the radius. For a distance that cannot miss a valley, at first order in the grid, see
 /// [`DistanceMap`](crate::DistanceMap). Geodesics over many hills may not be found at all (an error of 1e-16 grows
 /// exponentially along them): [`LogError::NotFound`], and NaN as distance.
