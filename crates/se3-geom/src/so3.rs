@@ -22,10 +22,9 @@ use crate::unit::{HALF_TURN_ROUNDING, is_unit, length};
 /// | transport | Exp(−ω/2)·v in body coordinates |
 /// | injectivity radius | π; within 2 ε of half a turn `log` is [`LogError::CutLocus`] and names the angle |
 ///
-/// Relative error of exp and log ≤ 4e-15 at every angle from 1e-300 to π − 1e-15, above which quaternions are 2 ε = 4.4e-16
-/// apart; at 2 ε from half a turn rounding decides which way round log goes. Where half a turn must have a logarithm all
-/// the same, [`So3Group::log`] returns one of the two. Source: thesis §4.5, eqs. D.3 and D.5, without
-/// the pole that D.3 has at half a turn.
+/// Relative error of exp and log ≤ 4e-15 at every angle from 1e-300 to π − 1e-15. Closer to half a turn than 2 ε = 4.4e-16 rad,
+/// rounding decides which way round is shorter, and `log` refuses. Where half a turn must have a logarithm all the same,
+/// [`So3Group::log`] returns one of the two. Source: thesis §4.5, eqs. D.3 and D.5, without the pole that D.3 has at half a turn.
 ///
 /// ```
 /// use se3_geom::{LogError, Manifold, So3, nalgebra::{UnitQuaternion, Vector3}};
