@@ -80,7 +80,8 @@ impl<const N: usize> CurvatureFlow<N> {
     /// Goes on by `step`, whose unit is that of length squared. On an error the flow stays as it was.
     ///
     /// # Errors
-    /// [`FlowError::Step`], [`FlowError::Coincident`] where points were drawn together.
+    /// [`FlowError::Step`], [`FlowError::Coincident`] where points were drawn together, [`FlowError::NonFinitePoint`] where the step
+    /// divided by an edge is more than a number holds.
     pub fn advance(&mut self, step: f64) -> Result<(), FlowError> {
         if !(step.is_finite() && step > 0.0) {
             return Err(FlowError::Step { step });

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use crate::embedding::Embedding;
-use crate::manifold::{LogError, Manifold};
+use crate::manifold::{LogError, Manifold, if_finite};
 
 /// ℝᴺ with the ordinary distance: the flat space that the others are compared with (thesis §4.1).
 ///
@@ -14,7 +14,7 @@ use crate::manifold::{LogError, Manifold};
 /// | exp, log | exp(p, v) = p + v, log(p, q) = q − p, everywhere |
 /// | distance | ‖q − p‖, in the unit of the data |
 /// | transport | v itself |
-/// | injectivity radius | infinite: `log` never fails |
+/// | injectivity radius | infinite: every two points have a `log` |
 ///
 /// ```
 /// use se3_geom::{Manifold, R3, nalgebra::Vector3};
@@ -38,7 +38,8 @@ impl<const N: usize> Manifold for Euclidean<N> {
         p + v
     }
     fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
-        Ok(q - p)
+        let difference = q - p;
+        if_finite(difference, &difference)
     }
     fn inner(&self, _: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
         u.dot(&v)

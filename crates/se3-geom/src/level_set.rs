@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector, Vector1, Vector4};
 
 use crate::geodesic_flow::{Connection, flow};
-use crate::geodesic_search::{distance_without_log, shortest_geodesic};
+use crate::geodesic_search::{shortest_distance, shortest_geodesic};
 use crate::manifold::{LogError, Manifold};
 
 /// K equations F(x) = 0 in ℝᴺ with their first and second derivatives; DF must have rank K on the level set.
@@ -47,13 +47,14 @@ pub trait Constraint<const N: usize, const K: usize> {
 /// | tangents at x | vectors v with D·v = 0; [`project_tangent`](Self::project_tangent) makes them |
 /// | metric | ⟨u, v⟩ = uᵀv |
 /// | exp | ẍ = −Dᵀ(DDᵀ)⁻¹·D²F(ẋ, ẋ): no acceleration along the set (thesis §4.4) |
-/// | log | its boundary-value problem, solved by shooting |
-/// | distance | length of the logarithm; NaN where none was found |
+/// | log | its boundary-value problem, solved by shooting; beyond the injectivity radius the shortest geodesic **found** |
+/// | distance | length of the logarithm, so beyond the injectivity radius an upper bound; NaN where none was found |
 /// | transport | ẇ = −Dᵀ(DDᵀ)⁻¹·D²F(ẋ, w) |
 /// | injectivity radius | the lower bound that the caller states |
 ///
 /// Geodesics are integrated to a relative error of 1e-13 a step, and each step is projected back onto the set. `log` works as on
-/// [`MongePatch`](crate::MongePatch): beyond the injectivity radius it is the shortest geodesic found, not a proven minimum.
+/// [`MongePatch`](crate::MongePatch): beyond the injectivity radius it is the shortest geodesic found, not a proven minimum, and
+/// [`LogError::NotFound`] where there was none. A point off the set is taken for the start of geodesics all the same.
 ///
 /// ```
 /// use se3_geom::{LevelSet, Manifold, nalgebra::Vector4};
@@ -172,10 +173,10 @@ impl<C: Constraint<N, K>, const N: usize, const K: usize> Manifold for LevelSet<
     fn transport(&self, p: &Self::Point, along: Self::Tangent, v: Self::Tangent) -> Self::Tangent {
         flow(self, [*p, along, v]).map_or(SVector::repeat(f64::NAN), |[_, _, carried]| carried)
     }
-    /// As on [`MongePatch`](crate::MongePatch): exactly symmetric, NaN where no geodesic was found.
+    /// As on [`MongePatch`](crate::MongePatch): exactly symmetric, an upper bound beyond the injectivity radius, NaN where no
+    /// geodesic was found.
     fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
-        let (from, goal) = if p.as_slice() <= q.as_slice() { (p, q) } else { (q, p) };
-        self.log(from, goal).map_or_else(distance_without_log, |v| v.norm())
+        shortest_distance(self, p, q, self.injectivity_radius)
     }
     /// The lower bound given to [`LevelSet::new`].
     fn injectivity_radius(&self) -> f64 {

@@ -66,6 +66,7 @@ mod level_set;
 mod manifold;
 mod monge;
 mod nearest_rotation;
+mod path_relaxation;
 mod planar_twist;
 mod pose;
 mod pose_spline;
@@ -82,6 +83,7 @@ mod stumpff;
 mod surface_grid;
 mod tridiagonal;
 mod twist;
+mod unit;
 
 pub use curvature_flow::{CurvatureFlow, FlowError};
 pub use curve::{

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 use crate::geodesic_flow::{Connection, flow};
-use crate::geodesic_search::{distance_without_log, shortest_geodesic};
+use crate::geodesic_search::{shortest_distance, shortest_geodesic};
 use crate::manifold::{LogError, Manifold};
 
 /// A height with its first and second derivatives at one point of the plane.
@@ -27,15 +27,20 @@ pub struct HeightJet {
 /// | metric | g = I + ∇h∇hᵀ (eq. 4.2: E = 1 + h_x², F = h_x·h_y, G = 1 + h_y²) |
 /// | Christoffel symbols | Γᵏᵢⱼ = h_k·h_ij/(1 + ‖∇h‖²) |
 /// | exp | the geodesic ẍ = −∇h·(ẋᵀHẋ)/(1 + ‖∇h‖²) (eq. 3.9; eqs. 4.5–4.6 for h = xy), integrated |
-/// | log | its boundary-value problem, solved by shooting (Examples 4.2 and 4.3) |
-/// | distance | length of the logarithm; NaN where none was found |
+/// | log | its boundary-value problem, solved by shooting (Examples 4.2 and 4.3); beyond the injectivity radius the shortest geodesic **found** |
+/// | distance | length of the logarithm, so beyond the injectivity radius an upper bound; NaN where none was found |
 /// | transport | ẇ = −∇h·(ẋᵀHw)/(1 + ‖∇h‖²) (eq. 3.8), integrated |
 /// | injectivity radius | the lower bound that the caller states |
 ///
 /// `exp` and `transport` integrate these equations to a relative error of 1e-13 a step. `log` shoots: Newton's method on the end
 /// point, first from the straight line of the plane. A geodesic shorter than the injectivity radius is the shortest. Where none was
-/// found, straight and bowed paths are shortened (relaxation) and shot from again, and the shortest geodesic of all is
-/// returned: **beyond the injectivity radius that is the best found, not a proven minimum**.
+/// found, 21 straight, bowed and weaving paths are shortened (relaxation), shots follow each from both ends, and the shortest
+/// geodesic of all is returned, from p to q and from q to p the same unless the last shot from one end fails: **beyond the
+/// injectivity radius that is the best found, not a proven minimum**, and [`LogError::CutLocus`] says that two of those found are
+/// equally long. To know which it is, compare
+/// `norm(p, v)` with the radius. For a distance that cannot miss a valley, at first order in the grid, see
+/// [`DistanceMap`](crate::DistanceMap). Geodesics over many hills may not be found at all (an error of 1e-16 grows
+/// exponentially along them): [`LogError::NotFound`], and NaN as distance.
 ///
 /// Where h or a derivative is not finite, results are NaN, which [`Manifold::is_finite`] sees.
 ///
@@ -102,6 +107,9 @@ impl<H: Fn(f64, f64) -> HeightJet> Manifold for MongePatch<H> {
         flow(self, [*p, v]).map_or(SVector::repeat(f64::NAN), |[end, _]| end)
     }
     fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
+        if !(self.is_finite(p) && self.is_finite(q)) {
+            return Err(LogError::NotAPoint);
+        }
         shortest_geodesic(self, p, q, self.injectivity_radius)
     }
     fn inner(&self, p: &Self::Point, u: Self::Tangent, v: Self::Tangent) -> f64 {
@@ -111,11 +119,10 @@ impl<H: Fn(f64, f64) -> HeightJet> Manifold for MongePatch<H> {
     fn transport(&self, p: &Self::Point, along: Self::Tangent, v: Self::Tangent) -> Self::Tangent {
         flow(self, [*p, along, v]).map_or(SVector::repeat(f64::NAN), |[_, _, carried]| carried)
     }
-    /// The length of the logarithm, found from the lexicographically smaller point so that it is exactly symmetric. NaN where
-    /// no geodesic was found.
+    /// The length of the logarithm, exactly symmetric. Beyond the injectivity radius an upper bound of the distance; NaN where no
+    /// geodesic was found.
     fn distance(&self, p: &Self::Point, q: &Self::Point) -> f64 {
-        let (from, goal) = if p.as_slice() <= q.as_slice() { (p, q) } else { (q, p) };
-        self.log(from, goal).map_or_else(distance_without_log, |v| self.norm(from, v))
+        shortest_distance(self, p, q, self.injectivity_radius)
     }
     /// The lower bound given to [`MongePatch::new`].
     fn injectivity_radius(&self) -> f64 {

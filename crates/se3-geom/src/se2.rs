@@ -3,7 +3,7 @@
 use nalgebra::{Isometry2, UnitComplex};
 
 use crate::embedding::Embedding;
-use crate::manifold::{LogError, Manifold};
+use crate::manifold::{LogError, Manifold, are_weights, if_finite};
 use crate::planar_twist::PlanarTwist;
 use crate::so2::So2;
 
@@ -18,7 +18,7 @@ use crate::so2::So2;
 /// | log | ω = θ₂ − θ₁ the short way round, v = R₁ᵀ(p₂ − p₁) |
 /// | distance | d² = α·ω² + β·‖p₂ − p₁‖² (thesis eq. 4.10, with ω the short way round) |
 /// | transport | (R(−ω)·v, ω): fixed in the world |
-/// | injectivity radius | π√α; at half a turn `log` is [`LogError::CutLocus`](crate::LogError::CutLocus) |
+/// | injectivity radius | π√α; at half a turn `log` is [`LogError::CutLocus`](crate::LogError::CutLocus) and names distance and angle |
 ///
 /// The motion along a circular arc, about a fixed centre, is [`Se2Group`](crate::Se2Group)'s. Relative error of log ≤ 1e-14.
 ///
@@ -37,8 +37,7 @@ pub struct Se2 {
 impl Se2 {
     /// The metric with weights α in rad⁻² and β in m⁻², both positive and finite; `None` otherwise.
     pub fn with_weights(alpha: f64, beta: f64) -> Option<Self> {
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        (positive(alpha) && positive(beta)).then_some(Self { alpha, beta })
+        are_weights(alpha, beta).then_some(Self { alpha, beta })
     }
 }
 
@@ -60,7 +59,7 @@ impl Manifold for Se2 {
     fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<PlanarTwist, LogError> {
         let angular = So2.log(&p.rotation, &q.rotation).map_err(|e| e.at_distance(self.distance(p, q)))?;
         let linear = p.rotation.inverse() * (q.translation.vector - p.translation.vector);
-        Ok(PlanarTwist { linear, angular })
+        if_finite(PlanarTwist { linear, angular }, &linear)
     }
     fn inner(&self, _: &Self::Point, u: PlanarTwist, v: PlanarTwist) -> f64 {
         self.alpha * u.angular * v.angular + self.beta * u.linear.dot(&v.linear)

@@ -2,7 +2,7 @@
 
 use crate::embedding::Embedding;
 use crate::group::{LieGroup, So3Group};
-use crate::manifold::{LogError, Manifold};
+use crate::manifold::{LogError, Manifold, are_weights, if_finite};
 use crate::pose::Pose;
 use crate::so3::So3;
 use crate::twist::Twist;
@@ -18,7 +18,7 @@ use crate::twist::Twist;
 /// | log | ω = log(R₁ᵀR₂), v = R₁ᵀ(p₂ − p₁) |
 /// | distance | d² = α‖log(R₁ᵀR₂)‖² + β‖p₂ − p₁‖² (eq. 4.17, with the square that 7.4 lacks), on the cut locus too |
 /// | transport | angular as on [`So3`]; linear Exp(−ω)·v, that is, fixed in the world |
-/// | injectivity radius | π√α; at half a turn `log` is [`LogError::CutLocus`](crate::LogError::CutLocus) |
+/// | injectivity radius | π√α; at half a turn `log` is [`LogError::CutLocus`](crate::LogError::CutLocus) and names distance and angle |
 ///
 /// Geodesics are the same for every α and β; distances, and so orders, are not: only L = √(α/β) matters, the metres that count as
 /// much as one radian. The metric is the same seen from every world frame (left-invariant), but not for every tool frame: moving
@@ -43,8 +43,7 @@ pub struct Se3 {
 impl Se3 {
     /// The metric with weights α in rad⁻² and β in m⁻², both positive and finite; `None` otherwise.
     pub fn with_weights(alpha: f64, beta: f64) -> Option<Self> {
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        (positive(alpha) && positive(beta)).then_some(Self { alpha, beta })
+        are_weights(alpha, beta).then_some(Self { alpha, beta })
     }
 
     /// The metric in metres where one radian counts as much as `length_m` metres: α = L², β = 1.
@@ -76,7 +75,7 @@ impl Manifold for Se3 {
     fn log(&self, p: &Pose, q: &Pose) -> Result<Twist, LogError> {
         let angular = So3.log(&p.rotation, &q.rotation).map_err(|e| e.at_distance(self.distance(p, q)))?;
         let linear = p.rotation.inverse() * (q.translation.vector - p.translation.vector);
-        Ok(Twist { linear, angular })
+        if_finite(Twist { linear, angular }, &linear)
     }
     fn inner(&self, _: &Pose, u: Twist, v: Twist) -> f64 {
         self.alpha * u.angular.dot(&v.angular) + self.beta * u.linear.dot(&v.linear)

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry2, Similarity2, UnitComplex};
 
 use crate::embedding::Embedding;
-use crate::manifold::{LogError, Manifold};
+use crate::manifold::{LogError, Manifold, are_weights, if_finite};
 use crate::planar_twist::SimilarityTwist;
 use crate::so2::So2;
 
@@ -17,7 +17,7 @@ use crate::so2::So2;
 /// | exp, log | even scaling and turning while the origin moves on a straight line; θ the short way round |
 /// | distance | d² = α((λ₂ − λ₁)² + (θ₂ − θ₁)²) + β‖d₂ − d₁‖² (eq. 4.21, with the square that its last term lacks) |
 /// | transport | as on [`Se2`](crate::Se2); scales are a flat factor |
-/// | injectivity radius | π√α; at half a turn `log` is [`LogError::CutLocus`](crate::LogError::CutLocus) |
+/// | injectivity radius | π√α; at half a turn `log` is [`LogError::CutLocus`](crate::LogError::CutLocus) and names distance and angle |
 ///
 /// The metric is invariant under rigid motions from the left, not under scalings, which stretch the translations (the thesis
 /// calls it left-invariant). The logarithmic spirals of the group are [`Sim2Group`](crate::Sim2Group)'s. Relative error of log
@@ -39,8 +39,7 @@ impl Sim2 {
     /// The metric with weights α, for squared radians and squared logarithms of scale alike, and β in m⁻², both positive and
     /// finite; `None` otherwise.
     pub fn with_weights(alpha: f64, beta: f64) -> Option<Self> {
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        (positive(alpha) && positive(beta)).then_some(Self { alpha, beta })
+        are_weights(alpha, beta).then_some(Self { alpha, beta })
     }
 }
 
@@ -51,15 +50,22 @@ impl Default for Sim2 {
     }
 }
 
-/// λ₂ − λ₁, accurate for scales that are nearly equal, and exactly antisymmetric.
+/// λ₂ − λ₁ to a rounding or two for all scales, and exactly antisymmetric. NaN where a scale is not positive.
 fn log_ratio(from: f64, into: f64) -> f64 {
-    let difference = into - from;
-    let smaller = from.min(into);
-    if difference.abs() < smaller {
-        (difference.abs() / smaller).ln_1p().copysign(difference)
-    } else {
-        into.ln() - from.ln()
+    if !(from > 0.0 && into > 0.0) {
+        return f64::NAN;
     }
+    let (smaller, larger) = (from.min(into), from.max(into));
+    let (growth, ratio) = ((larger - smaller) / smaller, larger / smaller);
+    let logarithm = if growth < 1.0 {
+        growth.ln_1p()
+    } else if ratio.is_finite() {
+        ratio.ln()
+    } else {
+        // Above 709, of which the roundings of the two logarithms are a small part.
+        larger.ln() - smaller.ln()
+    };
+    if into < from { -logarithm } else { logarithm }
 }
 
 impl Manifold for Sim2 {
@@ -78,7 +84,8 @@ impl Manifold for Sim2 {
             So2.log(&p.isometry.rotation, &q.isometry.rotation).map_err(|e| e.at_distance(self.distance(p, q)))?;
         let world = q.isometry.translation.vector - p.isometry.translation.vector;
         let linear = p.isometry.rotation.inverse() * world;
-        Ok(SimilarityTwist { linear, angular, scaling: log_ratio(p.scaling(), q.scaling()) })
+        let scaling = log_ratio(p.scaling(), q.scaling());
+        if_finite(SimilarityTwist { linear, angular, scaling }, &linear.push(scaling))
     }
     fn inner(&self, _: &Self::Point, u: SimilarityTwist, v: SimilarityTwist) -> f64 {
         self.alpha * (u.scaling * v.scaling + u.angular * v.angular) + self.beta * u.linear.dot(&v.linear)
@@ -99,7 +106,7 @@ impl Manifold for Sim2 {
     }
     fn is_finite(&self, p: &Self::Point) -> bool {
         let rotation = So2.is_finite(&p.isometry.rotation);
-        rotation && p.scaling().is_finite() && p.isometry.translation.vector.iter().all(|x| x.is_finite())
+        rotation && p.scaling().ln().is_finite() && p.isometry.translation.vector.iter().all(|x| x.is_finite())
     }
     fn embedding(&self) -> Option<Embedding> {
         Some(Embedding::flat(3, self.beta).with_sphere(2, self.alpha))

@@ -6,6 +6,7 @@ use nalgebra::UnitComplex;
 
 use crate::embedding::Embedding;
 use crate::manifold::{LogError, Manifold};
+use crate::unit::{HALF_TURN_ROUNDING, is_unit};
 
 /// SO(2) with its bi-invariant metric: the distance of two rotations is the angle between them, in rad.
 ///
@@ -17,7 +18,7 @@ use crate::manifold::{LogError, Manifold};
 /// | exp, log | exp(p, ω) = p·e^{iω}; log(p, q) = arg(p̄q) ∈ (−π, π) |
 /// | distance | the angle \|arg(p̄q)\| ∈ \[0, π\], on the cut locus too |
 /// | transport | ω itself: the circle is flat |
-/// | injectivity radius | π; at half a turn `log` is [`LogError::CutLocus`] and names the angle |
+/// | injectivity radius | π; within 2 ε of half a turn `log` is [`LogError::CutLocus`] and names the angle |
 ///
 /// Relative error of log ≤ 1e-14 at every angle, 1e-300 rad included. Source: thesis eq. D.5 in the plane.
 ///
@@ -29,9 +30,6 @@ use crate::manifold::{LogError, Manifold};
 /// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct So2;
-
-/// Rotations that differ by half a turn up to this angle are stored too coarsely to tell which way round is shorter.
-const UNDECIDED: f64 = 2.0 * f64::EPSILON;
 
 /// Sine and cosine of the angle from p to q. The sine is ½(p + q) × (q − p): exact differences keep its relative accuracy for
 /// the smallest angles, and swapping p and q flips its sign to the last bit.
@@ -48,10 +46,13 @@ impl Manifold for So2 {
         p * UnitComplex::new(v)
     }
     fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<f64, LogError> {
+        if !(is_unit(p.norm_sqr()) && is_unit(q.norm_sqr())) {
+            return Err(LogError::NotAPoint);
+        }
         let [sine, cosine] = relative(p, q);
         let angle = sine.atan2(cosine);
-        if sine.abs() < UNDECIDED && cosine < 0.0 {
-            Err(LogError::CutLocus { distance: angle.abs() })
+        if sine.abs() < HALF_TURN_ROUNDING && cosine < 0.0 {
+            Err(LogError::CutLocus { distance: angle.abs(), angle_rad: Some(angle.abs()) })
         } else {
             Ok(angle)
         }

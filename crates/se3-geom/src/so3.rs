@@ -7,6 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use crate::embedding::Embedding;
 use crate::group::{LieGroup, So3Group, logarithm};
 use crate::manifold::{LogError, Manifold};
+use crate::unit::{HALF_TURN_ROUNDING, is_unit, length};
 
 /// SO(3) with its bi-invariant metric: the distance of two rotations is the angle between them, in rad.
 ///
@@ -19,11 +20,11 @@ use crate::manifold::{LogError, Manifold};
 /// | log | ω with \[ω\] = log(R₁ᵀR₂) and ‖ω‖ < π |
 /// | distance | ‖log(R₁ᵀR₂)‖ = 2·atan2(‖v‖, \|w\|) ∈ \[0, π\] with w + v = q₁⁻¹q₂ (eq. D.5), on the cut locus too |
 /// | transport | Exp(−ω/2)·v in body coordinates |
-/// | injectivity radius | π; within 4 ε of half a turn `log` is [`LogError::CutLocus`] and names the angle |
+/// | injectivity radius | π; within 2 ε of half a turn `log` is [`LogError::CutLocus`] and names the angle |
 ///
-/// Relative error of exp and log ≤ 4e-15 at every angle from 1e-300 to π − 1e-15. Where half a turn must have a logarithm all
-/// the same, [`So3Group::log`] returns one of the two. Source: thesis §4.5, eqs. D.3 and D.5, without
-/// the pole that D.3 has at half a turn.
+/// Relative error of exp and log ≤ 4e-15 at every angle from 1e-300 to π − 1e-15. Closer to half a turn than 2 ε = 4.4e-16 rad,
+/// rounding decides which way round is shorter, and `log` refuses. Where half a turn must have a logarithm all the same,
+/// [`So3Group::log`] returns one of the two. Source: thesis §4.5, eqs. D.3 and D.5, without the pole that D.3 has at half a turn.
 ///
 /// ```
 /// use se3_geom::{LogError, Manifold, So3, nalgebra::{UnitQuaternion, Vector3}};
@@ -31,7 +32,8 @@ use crate::manifold::{LogError, Manifold};
 /// assert!((So3.log(&start, &end)? - Vector3::z() * 3.0).norm() < 1e-15);
 /// assert!(So3.geodesic(&start, &end, 0.5)?.angle_to(&UnitQuaternion::from_euler_angles(0.0, 0.0, 1.5)) < 1e-15);
 /// let half_turn = UnitQuaternion::from_scaled_axis(Vector3::x() * std::f64::consts::PI);
-/// assert_eq!(So3.log(&start, &half_turn), Err(LogError::CutLocus { distance: std::f64::consts::PI }));
+/// let pi = std::f64::consts::PI;
+/// assert_eq!(So3.log(&start, &half_turn), Err(LogError::CutLocus { distance: pi, angle_rad: Some(pi) }));
 /// # Ok::<(), LogError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -45,10 +47,14 @@ impl Manifold for So3 {
         p * So3Group::exp(v)
     }
     fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
+        if !(is_unit(p.norm_squared()) && is_unit(q.norm_squared())) {
+            return Err(LogError::NotAPoint);
+        }
         let (cosine, vector) = relative_quaternion(p, q);
-        // Rounding of the dot product leaves 4 ε in it: within that the side of half a turn is undecided.
-        if cosine < 4.0 * f64::EPSILON {
-            return Err(LogError::CutLocus { distance: PI });
+        // The cosine of half an angle next to π is half of what the angle lacks.
+        if cosine < 0.5 * HALF_TURN_ROUNDING {
+            let angle = 2.0 * length(&vector).atan2(cosine);
+            return Err(LogError::CutLocus { distance: angle, angle_rad: Some(angle) });
         }
         logarithm(cosine, vector).map(|log| log.rotation_vector).map_err(|_| LogError::NotAPoint)
     }
@@ -89,11 +95,4 @@ fn relative_quaternion(p: &UnitQuaternion<f64>, q: &UnitQuaternion<f64>) -> (f64
     let q = if cosine < 0.0 { -q.into_inner() } else { q.into_inner() };
     let vector = ((p.into_inner() + q).conjugate() * (q - p.into_inner())).imag() * 0.5;
     (cosine.abs(), vector)
-}
-
-/// ‖v‖, also where its square underflows.
-fn length(v: &Vector3<f64>) -> f64 {
-    let norm = v.norm();
-    let largest = v.amax();
-    if norm > 1e-140 || largest == 0.0 { norm } else { (v / largest).norm() * largest }
 }

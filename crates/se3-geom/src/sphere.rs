@@ -6,19 +6,20 @@ use nalgebra::Vector3;
 
 use crate::embedding::Embedding;
 use crate::manifold::{LogError, Manifold};
+use crate::unit::{HALF_TURN_ROUNDING, is_unit, length};
 
 /// The unit sphere S² ⊂ ℝ³ with the metric of the surrounding space (thesis §4.3); distances are angles in rad.
 ///
 /// | | |
 /// | --- | --- |
-/// | points | unit vectors; normalise what comes from outside ([`Vector3::normalize`]), every result is unit |
+/// | points | unit vectors; normalise what comes from outside ([`Vector3::normalize`]), every result is unit; `log` refuses squared norms more than 1e-6 off |
 /// | tangents at p | vectors orthogonal to p, in rad |
 /// | metric | ⟨u, v⟩ = uᵀv; in longitude v and colatitude u it is du² + sin²u·dv² (eq. 4.8) |
 /// | exp | p·cos‖v‖ + v·sin‖v‖/‖v‖: great circles |
 /// | log | the vector of length d(p, q) along (p × q) × p |
 /// | distance | atan2(‖p × q‖, p·q) ∈ \[0, π\], at antipodes too |
 /// | transport | along a great circle its own direction turns with it, the direction across stays (appendix C) |
-/// | injectivity radius | π; at the antipode `log` is [`LogError::CutLocus`] and names the angle |
+/// | injectivity radius | π; within 2 ε of the antipode `log` is [`LogError::CutLocus`] and names the angle |
 ///
 /// Relative error of exp and log ≤ 1e-14 at every distance. A vector carried round the latitude of 45° comes back turned by
 /// (2 − √2)π, the area that the latitude encloses (Gauss–Bonnet; Fig. C.1).
@@ -33,9 +34,6 @@ use crate::manifold::{LogError, Manifold};
 /// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Sphere;
-
-/// Points whose antipodes differ by less than this are stored too coarsely to tell in which direction the shorter arc leads.
-const UNDECIDED: f64 = 2.0 * f64::EPSILON;
 
 /// p × q as ½(p + q) × (q − p): near points have an exact difference, near antipodes an exact sum, so that the product keeps
 /// its relative accuracy at both ends. Swapping the points flips the sign to the last bit.
@@ -53,11 +51,14 @@ impl Manifold for Sphere {
     }
     /// Along (p × q) × p, which is as accurate next to the antipode as anywhere: see `oriented_sine`.
     fn log(&self, p: &Self::Point, q: &Self::Point) -> Result<Self::Tangent, LogError> {
+        if !(is_unit(p.norm_squared()) && is_unit(q.norm_squared())) {
+            return Err(LogError::NotAPoint);
+        }
         let distance = self.distance(p, q);
         let axis = oriented_sine(p, q);
         let sine = length(&axis);
-        if sine < UNDECIDED && p.dot(q) < 0.0 {
-            return Err(LogError::CutLocus { distance });
+        if sine < HALF_TURN_ROUNDING && p.dot(q) < 0.0 {
+            return Err(LogError::CutLocus { distance, angle_rad: Some(distance) });
         }
         Ok(if sine > 0.0 { axis.cross(p) * (distance / sine) } else { axis })
     }
@@ -88,12 +89,6 @@ impl Manifold for Sphere {
     fn embed(&self, p: &Self::Point, coordinates: &mut [f64]) {
         coordinates[..3].copy_from_slice(p.as_slice());
     }
-}
-
-/// ‖v‖, also where its square underflows.
-fn length(v: &Vector3<f64>) -> f64 {
-    let norm = v.norm();
-    if norm > 1e-150 { norm } else { v.x.hypot(v.y).hypot(v.z) }
 }
 
 /// sin θ/θ, which division computes to the last digit for every θ but 0.

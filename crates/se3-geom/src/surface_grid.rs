@@ -23,6 +23,14 @@ pub enum SurfaceGridError {
         /// How many heights there are.
         given: usize,
     },
+    /// The nodes do not fit into memory.
+    #[error("{columns} x {rows} nodes are more heights than memory holds")]
+    TooManyNodes {
+        /// Nodes along x.
+        columns: usize,
+        /// Nodes along y.
+        rows: usize,
+    },
     /// The corners do not span a rectangle.
     #[error("the corners ({x0}, {y0}) and ({x1}, {y1}) do not span a finite rectangle: x and y must both increase")]
     Corners {
@@ -64,16 +72,9 @@ impl SurfaceGrid {
         [columns, rows]: [usize; 2],
         heights: Vec<f64>,
     ) -> Result<Self, SurfaceGridError> {
-        if columns < 2 || rows < 2 {
-            return Err(SurfaceGridError::TooFewNodes { columns, rows });
-        }
+        let spacing = spacing(corner, opposite, [columns, rows])?;
         if columns.checked_mul(rows) != Some(heights.len()) {
             return Err(SurfaceGridError::HeightCount { columns, rows, given: heights.len() });
-        }
-        let spacing = (opposite - corner).component_div(&Vector2::new((columns - 1) as f64, (rows - 1) as f64));
-        if !spacing.iter().all(|s| s.is_finite() && *s > 0.0) {
-            let [x0, y0, x1, y1] = [corner.x, corner.y, opposite.x, opposite.y];
-            return Err(SurfaceGridError::Corners { x0, y0, x1, y1 });
         }
         Ok(Self { corner, spacing, columns, rows, heights })
     }
@@ -82,17 +83,22 @@ impl SurfaceGrid {
     /// [`MongePatch`](crate::MongePatch).
     ///
     /// # Errors
-    /// Those of [`SurfaceGrid::new`].
+    /// Those of [`SurfaceGrid::new`], and [`SurfaceGridError::TooManyNodes`] where memory for the heights, 8 bytes each, is refused.
     pub fn sample(
         corner: Vector2<f64>,
         opposite: Vector2<f64>,
         [columns, rows]: [usize; 2],
         height: impl Fn(f64, f64) -> f64,
     ) -> Result<Self, SurfaceGridError> {
-        let flat = Self::new(corner, opposite, [columns, rows], vec![0.0; columns.saturating_mul(rows)])?;
+        let spacing = spacing(corner, opposite, [columns, rows])?;
+        let mut heights = Vec::new();
+        let count = columns.checked_mul(rows).filter(|&count| heights.try_reserve_exact(count).is_ok());
+        count.ok_or(SurfaceGridError::TooManyNodes { columns, rows })?;
+        let mut grid = Self { corner, spacing, columns, rows, heights: Vec::new() };
         let nodes = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
-        let heights = nodes.map(|node| flat.node_place(node)).map(|place| height(place.x, place.y)).collect();
-        Ok(Self { heights, ..flat })
+        heights.extend(nodes.map(|node| grid.node_place(node)).map(|place| height(place.x, place.y)));
+        grid.heights = heights;
+        Ok(grid)
     }
 
     /// Nodes along x and along y.
@@ -151,6 +157,23 @@ impl SurfaceGrid {
         let cells = up.into_iter().flatten().flat_map(move |row| across.into_iter().flatten().map(move |c| [c, row]));
         cells.filter(|&cell| corners(cell).iter().all(|&node| self.heights[self.node_index(node)].is_finite()))
     }
+}
+
+/// How far nodes are apart along x and along y.
+fn spacing(
+    corner: Vector2<f64>,
+    opposite: Vector2<f64>,
+    [columns, rows]: [usize; 2],
+) -> Result<Vector2<f64>, SurfaceGridError> {
+    if columns < 2 || rows < 2 {
+        return Err(SurfaceGridError::TooFewNodes { columns, rows });
+    }
+    let spacing = (opposite - corner).component_div(&Vector2::new((columns - 1) as f64, (rows - 1) as f64));
+    if !spacing.iter().all(|s| s.is_finite() && *s > 0.0) {
+        let [x0, y0, x1, y1] = [corner.x, corner.y, opposite.x, opposite.y];
+        return Err(SurfaceGridError::Corners { x0, y0, x1, y1 });
+    }
+    Ok(spacing)
 }
 
 /// The nodes of a cell, counter-clockwise from the lowest.

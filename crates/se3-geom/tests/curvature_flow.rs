@@ -90,6 +90,18 @@ fn every_step_shortens_to_the_segment() {
     }
 }
 
+/// A curve that doubles back is drawn together: 2 − 1 over 1 + 2·1e20 vanishes in 1. And a step of 1e250 over edges of 1e-100
+/// overflows. Either way the flow stays as it was.
+#[test]
+fn a_step_that_leaves_no_curve_is_refused() {
+    let on_a_line = |x: [f64; 3]| CurvatureFlow::new(x.map(|x| Vector2::new(x, 0.0)).to_vec()).unwrap();
+    let [mut doubling_back, mut tiny] = [on_a_line([1.0, 2.0, 1.0]), on_a_line([0.0, 1e-100, 3e-100])];
+    let before = (doubling_back.clone(), tiny.clone());
+    assert_eq!(doubling_back.advance(1e20), Err(FlowError::Coincident { index: 0, time: 1e20 }));
+    assert!(matches!(tiny.advance(1e250), Err(FlowError::NonFinitePoint { .. })));
+    assert_eq!((doubling_back, tiny), before);
+}
+
 /// Curves that do not flow.
 #[test]
 fn refuses_what_is_no_curve() {

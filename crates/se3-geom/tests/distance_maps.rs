@@ -5,7 +5,7 @@ mod surfaces;
 
 use nalgebra::{Vector2, Vector3};
 use se3_geom::{DistanceMap, FrontError, Manifold, SurfaceGrid, SurfaceGridError, nalgebra};
-use surfaces::{egg_box, hill};
+use surfaces::{egg_box, hill, six_bumps};
 
 fn v(x: f64, y: f64) -> Vector2<f64> {
     Vector2::new(x, y)
@@ -206,6 +206,58 @@ fn rough_surfaces_have_distances_too() {
     }
 }
 
+/// 0.3 is the node in column 3 although 0.3/0.1 is less than 3 in numbers: the hole that ends there does not swallow it.
+#[test]
+fn a_point_meant_to_lie_on_a_line_lies_on_it() {
+    let height = |x: f64, _: f64| if (x - 0.2).abs() < 0.01 { f64::NAN } else { x };
+    let grid = SurfaceGrid::sample(v(0.0, 0.0), v(0.4, 1.0), [5, 3], height).unwrap();
+    assert!((grid.embed(&v(0.3, 0.7)).unwrap() - Vector3::new(0.3, 0.7, 0.3)).norm() < 1e-15);
+    assert_eq!(grid.embed(&v(0.299, 0.7)), None);
+}
+
+/// Six bumps and no radius stated, so that the logarithm is only the best geodesic found: never longer than a path that the
+/// distance map knows, whose length on the smooth surface bounds the distance from above. And as long one way as the other.
+#[test]
+fn shooting_finds_no_longer_way_than_propagation() {
+    let patch = six_bumps();
+    let grid = SurfaceGrid::sample(v(-3.0, -3.0), v(3.0, 3.0), [121, 121], |x, y| patch.embed(&v(x, y)).z).unwrap();
+    // Chords of a hundredth of a piece of path: 1e-6 of it short at most, at curvatures below 10 and pieces of 0.05.
+    let smooth_length = |path: &[Vector2<f64>]| -> f64 {
+        let at = |pair: &[Vector2<f64>], k: u32| patch.embed(&pair[0].lerp(&pair[1], f64::from(k) / 100.0));
+        path.windows(2).map(|pair| (0..100).map(|k| (at(pair, k + 1) - at(pair, k)).norm()).sum::<f64>()).sum()
+    };
+    for source in [v(-2.5, -0.4), v(-2.3, 2.2), v(0.3, -2.6)] {
+        let map = DistanceMap::from_source(&grid, source).unwrap();
+        for goal in [v(2.4, 0.2), v(2.2, 2.3), v(0.4, 2.4), v(2.3, -2.1), v(-2.0, -2.4)] {
+            let bound = smooth_length(&map.path_from(&goal).unwrap()) * (1.0 + 1e-6);
+            let (there, back) = (patch.log(&source, &goal).unwrap(), patch.log(&goal, &source).unwrap());
+            let (there, back) = (patch.norm(&source, there), patch.norm(&goal, back));
+            assert!(there <= bound, "{source} {goal}: {there} {bound}");
+            assert!((there - back).abs() < 1e-9 * there, "{source} {goal}: {there} {back}");
+            assert!((patch.distance(&source, &goal) - there).abs() < 1e-9 * there);
+        }
+    }
+}
+
+/// The same length from both ends, on the egg box at up to ten times the radius that is claimed.
+#[test]
+fn geodesics_are_as_long_there_as_back() {
+    let patch = egg_box();
+    for (p, q) in [
+        (v(-10.0, -7.0), v(10.0, 9.0)),
+        (v(-6.0, 2.0), v(5.0, -3.0)),
+        // Found from one end only, and longer from the other.
+        (v(17.63393977, -22.28624286), v(-7.64685, -27.636456)),
+        (v(2.926599748, 11.904174599), v(-18.4965, 12.62616)),
+        (v(-13.0, -8.0), v(12.0, 9.0)),
+    ] {
+        let (there, back) = (patch.log(&p, &q).unwrap(), patch.log(&q, &p).unwrap());
+        let (there, back) = (patch.norm(&p, there), patch.norm(&q, back));
+        assert!((there - back).abs() < 1e-9 * there, "{p} {q}: {there} {back}");
+        assert!(there > (q - p).norm());
+    }
+}
+
 /// Grids that are none.
 #[test]
 fn refuses_what_is_no_grid() {
@@ -214,6 +266,13 @@ fn refuses_what_is_no_grid() {
     assert_eq!(few, SurfaceGridError::TooFewNodes { columns: 1, rows: 5 });
     let short = SurfaceGrid::new(zero, one, [3, 5], vec![0.0; 14]).unwrap_err();
     assert_eq!(short, SurfaceGridError::HeightCount { columns: 3, rows: 5, given: 14 });
+    let [most, root] = [usize::MAX, 1 << 40];
+    for (columns, rows) in [(2, most), (most, 2), (root, root), (1 << 20, 1 << 40)] {
+        let refused = SurfaceGrid::sample(zero, one, [columns, rows], |_, _| 0.0);
+        assert_eq!(refused, Err(SurfaceGridError::TooManyNodes { columns, rows }));
+    }
+    let few = SurfaceGrid::sample(zero, one, [1, most], |_, _| 0.0);
+    assert_eq!(few, Err(SurfaceGridError::TooFewNodes { columns: 1, rows: most }));
     for opposite in [v(1.0, 0.0), v(-1.0, 1.0), v(f64::NAN, 1.0), v(f64::INFINITY, 1.0)] {
         let refused = SurfaceGrid::new(zero, opposite, [2, 2], vec![0.0; 4]);
         assert!(matches!(refused, Err(SurfaceGridError::Corners { .. })), "{opposite}");

@@ -8,9 +8,9 @@ mod surfaces;
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
-use nalgebra::{Matrix2, SMatrix, Vector1, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix2, SMatrix, Vector2, Vector3, Vector4};
 use se3_geom::{Constraint, HeightJet, LevelSet, LogError, Manifold, MongePatch, Sphere, UnitSegments, nalgebra};
-use surfaces::{egg_box, hill, saddle};
+use surfaces::{egg_box, hill, round_sphere, saddle};
 
 struct Solved {
     surface: String,
@@ -60,7 +60,7 @@ fn geodesics_of_monge_patches_are_those_of_scipy() {
             _ => {
                 let (p, q) = (Vector2::from(solved.from), Vector2::from(solved.to));
                 let refused = hill().log(&p, &q).unwrap_err();
-                let LogError::CutLocus { distance: length } = refused else { panic!("{refused}") };
+                let LogError::CutLocus { distance: length, angle_rad: None } = refused else { panic!("{refused}") };
                 assert!((length - solved.length).abs() < 1e-11, "{length}");
                 assert_eq!(hill().distance(&p, &q), length);
             }
@@ -117,7 +117,7 @@ fn a_spherical_cap_is_the_sphere() {
     assert!((cap.embed_tangent(&q, cap.transport(&p, along, w)) - carried).norm() < 1e-12);
     // Over the rim there is no surface: a point that is none, not a wrong one.
     assert!(!cap.is_finite(&cap.exp(&p, along * 5.0)));
-    assert!(matches!(cap.log(&p, &Vector2::new(1.2, 0.0)), Err(LogError::NotFound { .. })));
+    assert_eq!(cap.log(&p, &Vector2::new(1.2, 0.0)), Err(LogError::NotAPoint));
     assert!(cap.distance(&p, &Vector2::new(1.2, 0.0)).is_nan());
 }
 
@@ -156,7 +156,7 @@ fn distances_of_unit_segments_are_those_of_their_motions() {
         assert!((distance - exact).abs() < 1e-11 * (1.0 + exact), "{distance} {exact}");
     }
     let refused = segments.log(&p, &segment(0.3, -0.2, 0.5 + PI)).unwrap_err();
-    let LogError::CutLocus { distance: length } = refused else { panic!("{refused}") };
+    let LogError::CutLocus { distance: length, angle_rad: None } = refused else { panic!("{refused}") };
     assert!((length - PI * FRAC_1_SQRT_2).abs() < 1e-10);
 }
 
@@ -191,19 +191,7 @@ fn a_level_set_of_two_equations_is_the_flat_torus() {
 /// The sphere as a level set, x·x = 1, against its closed forms; and a long way round it.
 #[test]
 fn the_sphere_as_a_level_set_is_the_sphere() {
-    struct UnitLength;
-    impl Constraint<3, 1> for UnitLength {
-        fn value(&self, x: &Vector3<f64>) -> Vector1<f64> {
-            Vector1::new(x.norm_squared() - 1.0)
-        }
-        fn jacobian(&self, x: &Vector3<f64>) -> SMatrix<f64, 1, 3> {
-            x.transpose() * 2.0
-        }
-        fn second_derivative(&self, _: &Vector3<f64>, u: &Vector3<f64>, v: &Vector3<f64>) -> Vector1<f64> {
-            Vector1::new(2.0 * u.dot(v))
-        }
-    }
-    let level_set = LevelSet::new(UnitLength, PI);
+    let level_set = round_sphere();
     let p = Vector3::new(2.0, -1.0, 2.0) / 3.0;
     let along = level_set.project_tangent(&p, &Vector3::new(0.4, 1.9, 0.3));
     let w = level_set.project_tangent(&p, &Vector3::new(-0.8, 0.1, 1.0));
@@ -211,7 +199,10 @@ fn the_sphere_as_a_level_set_is_the_sphere() {
     assert!((level_set.exp(&p, along) - q).norm() < 1e-12);
     assert!((level_set.log(&p, &q).unwrap() - along).norm() < 1e-11);
     assert!((level_set.transport(&p, along, w) - Sphere.transport(&p, along, w)).norm() < 1e-12);
+    // Tangents stay so to their last digits, however long they are carried; the flow alone would let them drift by 1e-13.
+    let carried = level_set.transport(&p, along * 20.0, w);
     let wound = level_set.exp(&p, along * 20.0);
+    assert!(carried.dot(&wound).abs() < 4.0 * f64::EPSILON * carried.norm(), "{:e}", carried.dot(&wound));
     assert!((wound - Sphere.exp(&p, along * 20.0)).norm() < 1e-11 && (wound.norm() - 1.0).abs() < 1e-15);
 }
 

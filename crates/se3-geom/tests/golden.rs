@@ -7,8 +7,8 @@
 
 use nalgebra::{Complex, Isometry2, Similarity2, UnitComplex, UnitQuaternion, Vector2, Vector3};
 use se3_geom::{
-    LieGroup, Manifold, PlanarTwist, Pose, Se2Group, Se3, Se3Group, Sim2Group, SimilarityTwist, So2Group, So3,
-    So3Group, Twist, nalgebra,
+    LieGroup, LogError, Manifold, PlanarTwist, Pose, Se2, Se2Group, Se3, Se3Group, Sim2, Sim2Group, SimilarityTwist,
+    So2, So2Group, So3, So3Group, Twist, nalgebra,
 };
 use serde_json::Value;
 
@@ -44,6 +44,7 @@ fn rotations_and_poses_match_the_table() {
     let cases = table("spatial");
     assert_eq!(cases.len(), 153);
     let metric = Se3::with_weights(0.25, 4.0).unwrap();
+    let mut half_turns = 0;
     for case in &cases {
         let close = |what, got: &[f64], key| {
             let expected: Vec<f64> = case[key].as_array().unwrap().iter().map(number).collect();
@@ -72,18 +73,27 @@ fn rotations_and_poses_match_the_table() {
 
         let distance = number(&case["distance_from_identity_alpha_0.25_beta_4"]);
         assert_close("distance", case, SPATIAL_BOUND, &[metric.distance(&Pose::identity(), &pose)], &[distance]);
-        let near_half_turn = std::f64::consts::PI - log.angular.norm() < 1e-14;
-        if !near_half_turn {
-            let log = So3.log(&UnitQuaternion::identity(), &rotation).unwrap();
-            close("manifold log", log.as_slice(), "log_angular");
+        let logs = [
+            So3.log(&UnitQuaternion::identity(), &rotation),
+            metric.log(&Pose::identity(), &pose).map(|twist| twist.angular),
+        ];
+        for log in logs {
+            if w.abs() < f64::EPSILON {
+                assert!(matches!(log, Err(LogError::CutLocus { .. })), "half a turn: {log:?} at {case}");
+                half_turns += 1;
+            } else {
+                close("manifold log", log.unwrap().as_slice(), "log_angular");
+            }
         }
     }
+    assert_eq!(half_turns, 2 * 2);
 }
 
 #[test]
 fn planar_motions_match_the_table() {
     let cases = table("planar");
     assert_eq!(cases.len(), 202);
+    let mut half_turns = 0;
     for case in &cases {
         let twist = PlanarTwist::new(Vector2::from(numbers(&case["linear"])), number(&case["angular"]));
         let (cos_sin, translation) = (numbers::<2>(&case["cos_sin"]), numbers::<2>(&case["translation"]));
@@ -98,13 +108,29 @@ fn planar_motions_match_the_table() {
         assert_eq!(log.angular, So2Group::log(&rotation).unwrap());
         assert_close("log angular", case, PLANAR_BOUND, &[log.angular], &[number(&case["log_angular"])]);
         assert_close("log linear", case, PLANAR_BOUND, log.linear.as_slice(), &numbers::<2>(&case["log_linear"]));
+
+        let pose = Isometry2::from_parts(Vector2::from(translation).into(), rotation);
+        let logs = [
+            So2.log(&UnitComplex::identity(), &rotation),
+            Se2::default().log(&Isometry2::identity(), &pose).map(|twist| twist.angular),
+        ];
+        for log in logs {
+            if is_half_turn(cos_sin) {
+                assert!(matches!(log, Err(LogError::CutLocus { .. })), "half a turn: {log:?} at {case}");
+                half_turns += 1;
+            } else {
+                assert_close("manifold log", case, PLANAR_BOUND, &[log.unwrap()], &[number(&case["log_angular"])]);
+            }
+        }
     }
+    assert_eq!(half_turns, 2 * 4);
 }
 
 #[test]
 fn similarities_match_the_table() {
     let cases = table("similar");
     assert_eq!(cases.len(), 505);
+    let mut half_turns = 0;
     for case in &cases {
         let twist = SimilarityTwist::new(
             Vector2::from(numbers(&case["linear"])),
@@ -125,7 +151,29 @@ fn similarities_match_the_table() {
         assert_close("log angular", case, PLANAR_BOUND, &[log.angular], &[number(&case["log_angular"])]);
         assert_close("log scaling", case, PLANAR_BOUND, &[log.scaling], &[number(&case["log_scaling"])]);
         assert_close("log linear", case, PLANAR_BOUND, log.linear.as_slice(), &numbers::<2>(&case["log_linear"]));
+
+        // Between scales multiplied by a power of two, which is exact, so that the table holds of them too.
+        for power in [1.0, 2f64.powi(900), 2f64.powi(-900)] {
+            let base = Similarity2::from_isometry(Isometry2::identity(), power);
+            let grown = Similarity2::from_isometry(element.isometry, power * scale);
+            let log = Sim2::default().log(&base, &grown);
+            if is_half_turn(cos_sin) {
+                assert!(matches!(log, Err(LogError::CutLocus { .. })), "half a turn: {log:?} at {case}");
+                half_turns += 1;
+                continue;
+            }
+            let log = log.unwrap();
+            assert_close("manifold angular", case, PLANAR_BOUND, &[log.angular], &[number(&case["log_angular"])]);
+            assert_close("manifold scaling", case, PLANAR_BOUND, &[log.scaling], &[number(&case["log_scaling"])]);
+            assert_eq!(log.linear, Vector2::from(translation));
+        }
     }
+    assert_eq!(half_turns, 3 * 10);
+}
+
+/// Within 2 ε of (−1, 0), where the manifolds refuse.
+fn is_half_turn([cosine, sine]: [f64; 2]) -> bool {
+    cosine < 0.0 && sine.abs() < 2.0 * f64::EPSILON
 }
 
 fn unit_complex([cosine, sine]: [f64; 2]) -> UnitComplex<f64> {

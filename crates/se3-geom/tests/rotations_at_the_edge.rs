@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, Quaternion, Similarity2, UnitComplex, UnitQuaternion, Ve
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use se3_geom::{
-    LieGroup, LogError, Manifold, NearestRotationError, Pose, Se2, Se2Group, Se3, Se3Group, Sim2, Sim2Group, So2,
-    So2Group, So3, So3Group, Sphere, nalgebra, nearest_rotation,
+    LieGroup, LogError, Manifold, NearestRotationError, Pose, Se2, Se2Group, Se3, Se3Group, Sim2, Sim2Group,
+    SimilarityTwist, So2, So2Group, So3, So3Group, Sphere, nalgebra, nearest_rotation,
 };
 
 /// The directions to the faces, edges and corners of a cube, and some in between.
@@ -35,7 +35,7 @@ fn half_turns_have_a_group_logarithm() {
             assert!((Se3Group::exp(screw).to_homogeneous() - pose.to_homogeneous()).norm() < 16.0 * f64::EPSILON * 4.0);
             // The manifold, whose logarithm must be continuous, refuses the same half turn.
             let refused = So3.log(&UnitQuaternion::identity(), &half_turn);
-            assert_eq!(refused, Err(LogError::CutLocus { distance: PI }), "{axis}");
+            assert_eq!(refused, Err(LogError::CutLocus { distance: PI, angle_rad: Some(PI) }), "{axis}");
         }
     }
     for sine in [0.0, -0.0] {
@@ -46,12 +46,13 @@ fn half_turns_have_a_group_logarithm() {
 
 /// Where the shortest geodesic is not unique, the logarithm of a manifold says so and how far the two points are apart.
 #[test]
-fn on_the_cut_locus_the_error_names_the_distance() {
+fn on_the_cut_locus_the_error_names_distance_and_angle() {
     let named = |error: LogError, distance: f64| {
-        let LogError::CutLocus { distance: said } = error else { panic!("{error}") };
+        let LogError::CutLocus { distance: said, angle_rad: Some(angle) } = error else { panic!("{error}") };
         // The root of a sum of squares is off by a rounding or two.
         assert!((said - distance).abs() <= 2.0 * f64::EPSILON * distance, "{said} {distance}");
-        assert!(error.to_string().contains(&said.to_string()));
+        assert!((angle - PI).abs() <= 2.0 * f64::EPSILON, "{angle}");
+        assert!(error.to_string().contains(&format!("(distance {said}, angle {angle} rad)")), "{error}");
     };
     let start = So3Group::exp(Vector3::new(0.3, -1.2, 0.5));
     let offset = Vector3::new(2.0, -1.0, 2.0);
@@ -106,6 +107,32 @@ fn what_is_no_element_has_no_logarithm_and_the_error_names_the_angle() {
     let error = Sim2Group::log(&mirrored).unwrap_err();
     assert_eq!((error.angle_rad, error.scale), (0.5, -2.0));
     assert!(So2Group::log(&UnitComplex::new(f64::NAN)).is_err());
+}
+
+/// e^−800 is no number, but a similarity has a positive scale: the smallest.
+#[test]
+fn a_similarity_shrinks_to_the_smallest_scale_and_no_further() {
+    let shrunk = Sim2Group::exp(SimilarityTwist::new(Vector2::new(0.5, -1.0), 0.3, -800.0));
+    assert_eq!(shrunk.scaling(), f64::MIN_POSITIVE);
+    assert!((Sim2Group::log(&shrunk).unwrap().scaling - f64::MIN_POSITIVE.ln()).abs() < 1e-12);
+}
+
+/// At 3 ε from half a turn there is a logarithm in the plane, in space and on the sphere; at ε there is none in any of them.
+#[test]
+fn one_bound_decides_what_half_a_turn_is() {
+    let ends = |gap: f64| {
+        // sin and cos of π − gap and of half of it, to first order in the gap.
+        let flat = UnitComplex::new_unchecked(nalgebra::Complex::new(-1.0, gap));
+        let spatial = UnitQuaternion::new_unchecked(Quaternion::new(0.5 * gap, 0.0, 0.0, 1.0));
+        let planar = So2.log(&UnitComplex::identity(), &flat).map(|angle| angle - PI);
+        let solid = So3.log(&UnitQuaternion::identity(), &spatial).map(|turn| turn.norm() - PI);
+        let round = Sphere.log(&Vector3::x(), &Vector3::new(-1.0, gap, 0.0)).map(|arc| arc.norm() - PI);
+        [planar, solid, round]
+    };
+    assert!(ends(3.0 * f64::EPSILON).iter().all(|gap| gap.is_ok_and(|gap| gap.abs() <= 4.0 * f64::EPSILON)));
+    for refused in ends(f64::EPSILON) {
+        assert!(matches!(refused, Err(LogError::CutLocus { angle_rad: Some(_), .. })), "{refused:?}");
+    }
 }
 
 #[test]

@@ -111,7 +111,7 @@ fn have_logarithm<M: Manifold>(manifold: &M, p: &M::Point, q: &M::Point) -> Resu
 
 fn below_half_a_turn(turn: Vector3<f64>) -> Result<Vector3<f64>, LogError> {
     let angle = turn.norm();
-    if angle >= PI { Err(LogError::CutLocus { distance: angle }) } else { Ok(turn) }
+    if angle >= PI { Err(LogError::CutLocus { distance: angle, angle_rad: Some(angle) }) } else { Ok(turn) }
 }
 
 fn slerp(p: &JetRotation, q: &JetRotation, t: Jet) -> JetRotation {
