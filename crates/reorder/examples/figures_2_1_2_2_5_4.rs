@@ -1,7 +1,7 @@
 //! Thesis Figures 2.1, 2.2 and 5.4: what no method can order, and what the space around a curve does to its sampling.
 //!
 //! Figure 2.1 is a corner and Figure 2.2 two calm stretches side by side, both sampled too sparsely: the nearest neighbour is on
-//! the other side. The order then comes out wrong, and says so; with enough samples it is right. Figure 5.4 is one circle, in
+//! the other side. The minimum spanning tree then comes out wrong, and says so; with enough samples it is right. Figure 5.4 is one circle, in
 //! space and on spheres: the same samples are denser for the curve where the surface bends along with it.
 
 #[allow(dead_code)]
@@ -16,7 +16,7 @@ use std::path::Path;
 
 use drawing::{Panel, gallery_path, write};
 use plotters::style::{BLACK, GREEN, RED};
-use reorder::{Options, Ordering, order};
+use reorder::{Options, Ordering, Repair, order};
 use se3_geom::nalgebra::{Vector2, Vector3};
 use se3_geom::{Manifold, R2, R3, Sphere};
 use shuffled::{follows, shuffle};
@@ -55,7 +55,7 @@ fn calm(u: f64) -> Vector2<f64> {
 fn sample(name: &'static str, along: Vec<Vector2<f64>>, closed: bool) -> Result<Sample, Box<dyn Error>> {
     let places = shuffle(along.len(), 21);
     let points: Vec<_> = places.iter().map(|&k| along[k]).collect();
-    let ordering = order(&R2::default(), &points, &Options::default())?;
+    let ordering = order(&R2::default(), &points, &Options { repair: Repair::Off, ..Options::default() })?;
     let recovered = follows(&ordering, &places, closed);
     Ok(Sample { name, points, ordering, recovered })
 }

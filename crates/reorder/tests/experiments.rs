@@ -118,12 +118,12 @@ fn sparse_samples_are_wrong_and_doubted_dense_ones_right() {
 /// Dense samples (ε < 1) come out right, which is the theorem; sparse ones less often, and the chain less often still.
 #[test]
 fn success_falls_with_epsilon() {
-    let numbers = success_by_epsilon::compute(60).unwrap();
+    let numbers = success_by_epsilon::compute(25).unwrap();
     let all = |k: usize| {
         let right: f64 = (0..8).map(|class| numbers.shares[class][k] * numbers.cases[class] as f64).sum();
         right / numbers.cases.iter().sum::<usize>() as f64
     };
-    assert!(numbers.cases.iter().sum::<usize>() >= 50);
+    assert!(numbers.cases.iter().sum::<usize>() >= 18);
     // Classes 0 to 2 end at 0.25·32^(3/8) = 0.92.
     assert!((0..3).all(|class| numbers.cases[class] == 0 || numbers.shares[class][0] == 1.0), "{:?}", numbers.shares);
     assert!(all(0) > all(2), "{} {}", all(0), all(2));

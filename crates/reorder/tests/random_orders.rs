@@ -53,7 +53,7 @@ fn share<'a>(trials: &[&'a Trial], which: impl Fn(&&&'a Trial) -> bool) -> f64 {
 fn success_by_density() {
     let mut random = Random::seeded(41);
     let mut trials = Vec::new();
-    while trials.len() < cases(60) {
+    while trials.len() < cases(25) {
         let curve = Measured::closed(Se3::default(), pose_curve(&mut random));
         // Even in the logarithm from 0.2 to 8.
         let wanted = (0.2_f64.ln() + 0.5 * (1.0 + random.signed()) * 40.0_f64.ln()).exp();
@@ -184,7 +184,7 @@ fn print_by_kind(trials: &[Trial]) {
 fn no_wrong_order_is_certified() {
     let mut random = Random::seeded(42);
     let mut trials: Vec<Trial> = Vec::new();
-    while trials.len() < cases(200) {
+    while trials.len() < cases(40) {
         let random = &mut random;
         trials.extend(match random.below(6) {
             0 => any_curve(random, "SE3", Se3::default(), pose_curve),

@@ -159,7 +159,7 @@ fn equal_points_at_a_crossing_are_passed_one_at_a_time() {
     let at = |k: usize| {
         let (s, c) = (TAU * k as f64 / n as f64).sin_cos();
         // Rounding would tell the two passes of the origin apart.
-        if k % (n / 2) == 0 { Vector2::zeros() } else { Vector2::new(s, s * c) }
+        if k.is_multiple_of(n / 2) { Vector2::zeros() } else { Vector2::new(s, s * c) }
     };
     let points: Vec<_> = (0..n).map(at).collect();
     let found = order(&R2::default(), &points, &Options::default()).unwrap();

@@ -242,7 +242,7 @@ fn an_end_that_points_at_another_stretch_is_doubted() {
 fn no_wrong_order_of_uneven_clean_samples_is_believed() {
     let mut random = Random::seeded(22);
     let (mut believed, mut wrong) = (0, 0);
-    for trial in 0..60 {
+    for trial in 0..300 {
         let n = [25, 50, 100][trial % 3];
         let harmonics: Vec<[Vector3<f64>; 2]> = (0..3).map(|_| [random.vector(), random.vector()]).collect();
         let curve = |t: f64| {
@@ -253,7 +253,10 @@ fn no_wrong_order_of_uneven_clean_samples_is_believed() {
         };
         let points: Vec<_> = (0..n).map(|k| curve(TAU * (k as f64 + 0.4 * random.signed()) / n as f64)).collect();
         let rows = random.permutation(n);
-        let found = order(&R3::default(), &shuffled(&points, &rows), &Options::default()).unwrap();
+        // Repair costs a second a time: now and then.
+        let repair = if trial % 30 == 0 { Repair::Auto } else { Repair::Off };
+        let options = Options { repair, ..Options::default() };
+        let found = order(&R3::default(), &shuffled(&points, &rows), &options).unwrap();
         let truth = neighbours(&(0..n).collect::<Vec<_>>(), true);
         let recovered = neighbours(&unshuffled(&found.order, &rows), found.topology == Topology::Closed);
         let right = recovered.iter().all(|pair| truth.contains(pair)) && recovered.len() + 1 >= n;
@@ -261,8 +264,8 @@ fn no_wrong_order_of_uneven_clean_samples_is_believed() {
         believed += usize::from(found.verdict > Verdict::Ambiguous);
         assert!(right || found.verdict == Verdict::Ambiguous, "trial {trial}");
     }
-    assert!(wrong > 1, "only {wrong} hard cases");
-    assert!(believed > 3, "only {believed} believed");
+    assert!(wrong > 100, "only {wrong} hard cases");
+    assert!(believed > 10, "only {believed} believed");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use se3_geom::{Bezier, LieGroup, LogError, Pose, R2, Screw, Se3Group, So3, So3Gr
 fn half_turns_of_the_group_are_named_by_their_angle() {
     let start = Pose::identity();
     let end = Pose::new(Vector3::new(3.0, 4.0, 0.0), Vector3::new(0.0, PI, 0.0));
-    let half_turn = LogError::CutLocus { distance: PI };
+    let half_turn = LogError::CutLocus { distance: PI, angle_rad: Some(PI) };
     assert_eq!(Screw::between(start, end).unwrap_err(), half_turn);
     assert_eq!(Bezier::new(Se3Group, [start, start, end, end]).unwrap_err(), half_turn);
     let nowhere = Pose::translation(f64::NAN, 0.0, 0.0);
