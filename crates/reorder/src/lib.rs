@@ -36,6 +36,13 @@
 //! - there are three to seven distinct points: too few to tell one curve from another;
 //! - for poses: the order changes when a radian counts for half or for twice as many metres.
 //!
+//! Where something in this list speaks against the order (and there are no more than [`MOST_REPAIRED_UNASKED`] points), the order
+//! is sought again as the path that is short and turns little ([`Method::Repaired`]): by local search with 3 units of length for a
+//! unit of turning. It is judged by searches that should find the same, at other prices of turning (0, 1, 8), from another start, and
+//! at other weights: every place where one of them differs is a doubt. If none differs, and the samples are smooth with ε up to 1,
+//! doubts about neighbourhoods are taken back, and the order is plausible; on noisy or sparser samples they stand, since there all
+//! searches agree on one wrong order too often.
+//!
 //! What it cannot see: a curve that runs back along itself while its points happen to fall evenly between each other, or
 //! one that leaves out a stretch and goes straight on. No distance tells those from an honest curve.
 //!

@@ -64,7 +64,9 @@ pub(crate) fn draw(numbers: &Numbers, path: &Path) -> Result<(), Box<dyn Error>>
 
 fn main() -> Result<(), Box<dyn Error>> {
     let numbers = compute()?;
-    draw(&numbers, &gallery_path("figure_4_1")?)?;
+    let path = gallery_path("figure_4_1")?;
+    draw(&numbers, &path)?;
+    println!("drawn to {}", path.display());
     for stage in &numbers.stages {
         println!("t = {:.3}  length {:.9}", stage.time, stage.length);
     }

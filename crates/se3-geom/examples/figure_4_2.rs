@@ -72,7 +72,9 @@ pub(crate) fn draw(numbers: &Numbers, path: &Path) -> Result<(), Box<dyn Error>>
 
 fn main() -> Result<(), Box<dyn Error>> {
     let numbers = compute()?;
-    draw(&numbers, &gallery_path("figure_4_2")?)?;
+    let path = gallery_path("figure_4_2")?;
+    draw(&numbers, &path)?;
+    println!("drawn to {}", path.display());
     for (name, case) in [("z = xy", &numbers.saddle), ("z = sin x cos y", &numbers.egg_box)] {
         println!("{name}: first guess {:.9}, geodesic {:.9}", case.guess_length, case.geodesic_length);
     }

@@ -108,7 +108,9 @@ pub(crate) fn draw(numbers: &Numbers, path: &Path) -> Result<(), Box<dyn Error>>
 
 fn main() -> Result<(), Box<dyn Error>> {
     let numbers = compute()?;
-    draw(&numbers, &gallery_path("figure_4_5")?)?;
+    let path = gallery_path("figure_4_5")?;
+    draw(&numbers, &path)?;
+    println!("drawn to {}", path.display());
     println!("distance {:.6}, paths {:.6} and {:.6}", numbers.distance, numbers.lengths[0], numbers.lengths[1]);
     Ok(())
 }

@@ -116,7 +116,9 @@ pub(crate) fn draw(numbers: &Numbers, path: &Path) -> Result<(), Box<dyn Error>>
 
 fn main() -> Result<(), Box<dyn Error>> {
     let numbers = compute()?;
-    draw(&numbers, &gallery_path("figure_5_5")?)?;
+    let path = gallery_path("figure_5_5")?;
+    draw(&numbers, &path)?;
+    println!("drawn to {}", path.display());
     println!("circle {:.9}, normal geodesic to M {:.9}", numbers.circle_length, numbers.normal_length);
     println!("normal geodesics from all around C miss M by {:.1e}", numbers.worst_miss);
     println!("least distance to M by front propagation {:.6}", numbers.least_distance_by_front);

@@ -50,6 +50,8 @@ pub enum FrontError {
 /// obtuse triangles one pass is not enough. The result is a fixed point of the update, to rounding. The update is monotone and
 /// consistent and its fixed points are bounded, so that they converge to the distance as the grid is refined (Barles &
 /// Souganidis 1991). The error is of **first order** in the spacing for a smooth surface; on a plane there is none but rounding.
+/// Next to a hole, round which the front bends, it falls more slowly (order 0.7 was measured), and a hole is as large as the cells that
+/// have a corner in it; there the length of [`path_from`](Self::path_from) is the better figure.
 ///
 /// ```
 /// use se3_geom::{nalgebra::Vector2, DistanceMap, SurfaceGrid};

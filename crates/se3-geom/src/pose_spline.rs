@@ -57,7 +57,22 @@ pub struct Motion {
     pub jerk: Twist,
 }
 
-/// A C² curve through every one of its poses.
+/// A C² curve through every one of its poses: the *midpoint-chart cubic* of rotations, and on the same knots the ordinary C² cubic
+/// spline of positions.
+///
+/// Between poses i and i + 1, tᵢ apart from tᵢ₊₁ = tᵢ + h, with θ = log(RᵢᵀRᵢ₊₁):
+///
+/// R(tᵢ + s) = Rᵢ·Exp(θ/2)·Exp(φ(s)), p(tᵢ + s) a cubic,
+///
+/// where φ is the cubic vector polynomial that leads from −θ/2 to θ/2 with the end slopes φ′ = Jr⁻¹(φ)·ω of the body rates ωᵢ, ωᵢ₊₁.
+/// These rates are the unknowns: they are solved for so that the angular acceleration is continuous at every knot (Newton's method
+/// on a block-tridiagonal system). A chart in the middle of each piece makes the curve the same seen from either end. Fourth order, as
+/// cubic splines of flat space, of which this is the counterpart on SO(3); the cumulative B-spline (Kim, Kim, Shin 1995) is of
+/// third order and not symmetric.
+///
+/// A curve is refused, not returned, where two successive rotations are within [`HALF_TURN_MARGIN_RAD`] of half a turn, where the
+/// equations are not solved to rounding, and where a piece is longer than its own step by more than twice the largest step next to
+/// it (in metres or in radians) or turns by [`WINDING_BOUND_RAD`] too much: see [`SplineError`].
 ///
 /// Left-invariant and symmetric: moving all poses by g moves the curve by g, reversing the poses reverses the curve. With
 /// clamped or periodic ends it is fourth order accurate in the knot spacing, its twist third, its acceleration second.
@@ -135,7 +150,8 @@ impl PoseSpline {
         self.closed
     }
 
-    /// Pose and derivatives at parameter `t`. Beyond its domain an open curve stays at its end, a closed one goes round again.
+    /// Pose and derivatives at parameter `t`. Beyond its domain an open curve stays at its end, **with the derivatives it has there**
+    /// (a controller that overruns must set them to zero); a closed one goes round again.
     pub fn at(&self, t: f64) -> Motion {
         let (segment, local) = locate(&self.knots, self.closed, t);
         self.in_segment(segment, local)

@@ -46,9 +46,10 @@ impl Se3 {
         are_weights(alpha, beta).then_some(Self { alpha, beta })
     }
 
-    /// The metric in metres where one radian counts as much as `length_m` metres: α = L², β = 1.
+    /// The metric in metres where one radian counts as much as `length_m` metres: α = L², β = 1. L must be positive and its square
+    /// a positive finite number; `None` otherwise.
     pub fn with_metres_per_radian(length_m: f64) -> Option<Self> {
-        Self::with_weights(length_m * length_m, 1.0)
+        Self::with_weights(length_m * length_m, 1.0).filter(|_| length_m > 0.0)
     }
 
     /// L = √(α/β): how many metres count as much as one radian.

@@ -67,8 +67,8 @@ impl<M: Manifold> Curve for Geodesic<M> {
 /// The screw motion c(t) = A·exp(t·ξ), t ∈ \[0, 1\]: a turn about a fixed axis with a proportional slide along it, at constant
 /// body twist ξ.
 ///
-/// The straight line of the *group* SE(3). It is no geodesic of [`Se3`](crate::Se3) unless axis and slide are parallel or one
-/// of them is missing: the tool's origin runs on a helix, Rᵀp″ = ω×v.
+/// The straight line of the *group* SE(3). It is no geodesic of [`Se3`](crate::Se3) unless the axis passes through the tool's
+/// origin (or nothing turns), ω×v = 0: elsewhere the origin runs on a helix, Rᵀp″ = ω×v.
 ///
 /// ```
 /// use se3_geom::{Curve, Screw, nalgebra::Vector3, pose_from_xyzw};
