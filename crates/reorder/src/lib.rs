@@ -130,3 +130,8 @@ pub use poses::{order_poses, order_weighted};
 pub use spade;
 pub use spanning_tree::{Tree, minimum_spanning_tree};
 pub use weight::{Weight, Weighted, automatic_weight};
+
+/// The README's example, compiled and run with the other examples.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;
