@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use reorder::{Options, OrderError, Ordering, TopologyChoice, order, order_poses};
+use reorder::{Options, OrderError, Ordering, Repair, TopologyChoice, order, order_poses};
 use se3_geom::nalgebra::{Quaternion, UnitQuaternion, Vector2, Vector3};
 use se3_geom::{Pose, R2, R3, So3, Sphere};
 
@@ -41,7 +41,9 @@ fuzz_target!(|bytes: &[u8]| {
     }
     let topology = [TopologyChoice::Auto, TopologyChoice::Open, TopologyChoice::Closed][usize::from(choices % 3)];
     let start = (choices & 4 != 0).then_some(usize::from(start));
-    let options = Options { topology, start, ..Options::default() };
+    // The search of a repair costs as much as hundreds of trees: every eighth choice, of few points.
+    let repair = if choices & 56 == 8 && coordinates.len() < 90 { Repair::Auto } else { Repair::Off };
+    let options = Options { topology, start, repair, denoise: choices & 64 != 0, ..Options::default() };
     let numbers: Vec<f64> = coordinates.iter().map(|&byte| number(byte)).collect();
     let triples = || numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]);
     match space % 5 {
