@@ -184,7 +184,7 @@ fn print_by_kind(trials: &[Trial]) {
 fn no_wrong_order_is_certified() {
     let mut random = Random::seeded(42);
     let mut trials: Vec<Trial> = Vec::new();
-    while trials.len() < cases(40) {
+    while trials.len() < cases(80) {
         let random = &mut random;
         trials.extend(match random.below(6) {
             0 => any_curve(random, "SE3", Se3::default(), pose_curve),
@@ -201,5 +201,10 @@ fn no_wrong_order_is_certified() {
     if let Some(wrong) = certified().find(|t| !(t.exact && t.topology_right)) {
         panic!("{} of {} points, epsilon {}: {:?}", wrong.kind, wrong.n, wrong.epsilon, wrong.found.certificate);
     }
+    let plausible = || trials.iter().filter(|t| t.found.verdict == Verdict::Plausible);
+    let wrong = plausible().filter(|t| !t.exact).count();
+    println!("plausible: {}, {wrong} of them wrong", plausible().count());
+    // One in a hundred of such samples is, at times; when doubts gave way to searches on noisy ones too, every tenth was.
+    assert!(wrong * 50 <= plausible().count(), "{wrong} of {}", plausible().count());
     assert!(certified().count() * 12 > trials.len(), "the verdict is of no use");
 }
