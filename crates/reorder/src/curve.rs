@@ -1,28 +1,32 @@
 //! Distinct points in order, with the geometry that the tests on an order need.
 
+use std::sync::Arc;
+
 use se3_geom::Manifold;
 
 /// A polygon on a manifold: position k holds `point(k)`, which stands in input row `rows[k]`.
+///
+/// It has its own copy of the points, in order: of many points in input rows every second one would have to be waited for.
 pub(crate) struct Curve<'a, M: Manifold> {
     pub(crate) manifold: &'a M,
-    points: &'a [M::Point],
+    points: Arc<[M::Point]>,
     pub(crate) rows: &'a [usize],
     pub(crate) closed: bool,
 }
 
 impl<'a, M: Manifold> Curve<'a, M> {
     pub(crate) fn new(manifold: &'a M, points: &'a [M::Point], rows: &'a [usize], closed: bool) -> Self {
-        Self { manifold, points, rows, closed }
+        Self { manifold, points: rows.iter().map(|&row| points[row].clone()).collect(), rows, closed }
     }
     /// The same points as a loop.
     pub(crate) fn joined(&self) -> Self {
-        Self { closed: true, ..*self }
+        Self { points: Arc::clone(&self.points), closed: true, ..*self }
     }
     pub(crate) fn len(&self) -> usize {
         self.rows.len()
     }
-    pub(crate) fn point(&self, k: usize) -> &'a M::Point {
-        &self.points[self.rows[k]]
+    pub(crate) fn point(&self, k: usize) -> &M::Point {
+        &self.points[k]
     }
     pub(crate) fn distance(&self, a: usize, b: usize) -> f64 {
         self.manifold.distance(self.point(a), self.point(b))

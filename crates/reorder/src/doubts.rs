@@ -35,6 +35,7 @@ const MORE_EVEN: f64 = 4.0;
 /// One doubt for every vertex where the tree branches, at its longest side edge.
 pub(crate) fn of_tree(tree: &Tree) -> Vec<Doubt> {
     tree.node_indices()
+        .filter(|&v| tree.neighbors(v).nth(2).is_some())
         .filter_map(|v| {
             let mut edges: Vec<_> = tree.edges(v).collect();
             edges.sort_by(|a, b| a.weight().total_cmp(b.weight()).then(a.target().cmp(&b.target())));

@@ -20,9 +20,13 @@ pub(crate) struct Distinct {
 }
 
 /// Contracts the edges of rounding length. What is left is the minimum spanning tree of the distinct points.
-pub(crate) fn merge<M: Manifold>(manifold: &M, points: &[M::Point], tree: &Tree) -> Distinct {
+pub(crate) fn merge<M: Manifold>(manifold: &M, points: &[M::Point], tree: Tree) -> Distinct {
     let longest = tree.edge_weights().copied().fold(0.0, f64::max);
     let is_rounding = |length: f64| length <= ROUNDING_SHARE * longest;
+    if !tree.edge_weights().any(|length| is_rounding(*length)) {
+        let rows = 0..points.len();
+        return Distinct { groups: rows.clone().map(|row| vec![row]).collect(), group_of_row: rows.collect(), tree };
+    }
     let mut merged = UnionFind::<usize>::new(points.len());
     for edge in tree.edge_references().filter(|e| is_rounding(*e.weight())) {
         merged.union(edge.source().index(), edge.target().index());

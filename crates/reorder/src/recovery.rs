@@ -11,7 +11,7 @@ use crate::error::OrderError;
 use crate::ordering::{Options, TopologyChoice};
 use crate::spanning_tree::{Tree, minimum_spanning_tree};
 use crate::topology::{Closing, closing, rotate_to};
-use crate::walk::{far_end, walk};
+use crate::walk::{far_end, is_path, walk};
 
 /// Distinct points in order: `rows` holds the first row of every group of equal points.
 pub(crate) struct Recovery {
@@ -33,9 +33,8 @@ pub(crate) fn recover<M: Manifold>(
     let mut rows = rows_along(tree, far_end(tree));
     let path = Curve::new(manifold, points, &rows, false);
     let ends = closing(&path);
-    let branches = tree.node_indices().any(|node| tree.neighbors(node).count() > 2);
     let closed = match options.topology {
-        TopologyChoice::Auto => ends == Closing::Meets || (!branches && closes(&path)),
+        TopologyChoice::Auto => ends == Closing::Meets || (is_path(tree) && closes(&path)),
         TopologyChoice::Open => false,
         TopologyChoice::Closed => true,
     };
@@ -94,7 +93,7 @@ fn distinct_points<M: Manifold>(
     if let Some(start) = start.filter(|&start| start >= count) {
         return Err(OrderError::StartOutOfRange { start, count });
     }
-    let merged = merge(manifold, points, &minimum_spanning_tree(manifold, points)?);
+    let merged = merge(manifold, points, minimum_spanning_tree(manifold, points)?);
     match merged.groups.len() {
         1 => Err(OrderError::AllEqual { count }),
         distinct if distinct < needed => Err(OrderError::TooFewDistinct { count, distinct, needed }),

@@ -8,7 +8,7 @@ pub(super) trait Task {
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
-/// Runs the task with AVX2 and FMA where there are such.
+/// Runs the task with AVX-512, or AVX2 and FMA, where there are such; both round alike.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "the compiler cannot see that the processor was asked")]
 pub(super) fn run<T: Task>(task: T) -> T::Output {
@@ -16,8 +16,19 @@ pub(super) fn run<T: Task>(task: T) -> T::Output {
     fn wide<T: Task>(task: T) -> T::Output {
         task.run::<true>()
     }
-    if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") {
-        // SAFETY: the processor has just said that it has both features, and they are all that `wide` asks for.
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
+    fn widest<T: Task>(task: T) -> T::Output {
+        task.run::<true>()
+    }
+    let fused = std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
+    let masked = std::is_x86_feature_detected!("avx512f")
+        && std::is_x86_feature_detected!("avx512dq")
+        && std::is_x86_feature_detected!("avx512vl");
+    if fused && masked {
+        // SAFETY: the processor has just said that it has these features, and they are all that `widest` asks for.
+        unsafe { widest(task) }
+    } else if fused {
+        // SAFETY: as above, for `wide`.
         unsafe { wide(task) }
     } else {
         task.run::<false>()
