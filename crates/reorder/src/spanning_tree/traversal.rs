@@ -98,7 +98,7 @@ impl<const F: usize, const R: usize, S: Seeker> Search<'_, F, R, S> {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
             let to_leaf = self.chords.to_leaf::<FUSED, F, R>(points, lane, others);
-            let mut hits = within(&to_leaf.bound, &[self.seeker.reach()[lane]; LANES]);
+            let mut hits = vectorised::at_most::<FUSED>(&to_leaf.bound, self.seeker.reach()[lane]);
             while hits != 0 {
                 let k = hits.trailing_zeros() as usize;
                 hits &= hits - 1;

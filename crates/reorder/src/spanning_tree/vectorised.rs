@@ -1,5 +1,7 @@
 //! The widest vector instructions that the processor at hand has.
 
+use super::kd_tree::LANES;
+
 /// Work that is written once and compiled for every instruction set.
 pub(super) trait Task {
     type Output;
@@ -57,4 +59,30 @@ pub(super) fn greater(a: f64, b: f64) -> f64 {
 #[inline(always)]
 pub(super) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// Bit k: `values[k]` is at most `limit`.
+#[inline(always)]
+pub(super) fn at_most<const FUSED: bool>(values: &[f64; LANES], limit: f64) -> u32 {
+    #[cfg(target_arch = "x86_64")]
+    #[expect(unsafe_code, reason = "the compiler cannot see that the processor was asked")]
+    if FUSED {
+        // SAFETY: `run` fuses only where the processor has AVX2.
+        return unsafe { at_most_avx(values, limit) };
+    }
+    (0..LANES).fold(0, |mask, k| mask | u32::from(values[k] <= limit) << k)
+}
+
+/// The plain loop makes the compiler split the arithmetic that leads there into vectors of odd lengths.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+#[inline]
+fn at_most_avx(values: &[f64; LANES], limit: f64) -> u32 {
+    use std::arch::x86_64::{_CMP_LE_OQ, _mm256_cmp_pd, _mm256_movemask_pd, _mm256_set1_pd, _mm256_setr_pd};
+    let mut mask = 0;
+    for k in [0, 4, 8, 12] {
+        let four = _mm256_setr_pd(values[k], values[k + 1], values[k + 2], values[k + 3]);
+        mask |= _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(four, _mm256_set1_pd(limit))) << k;
+    }
+    mask as u32
 }
