@@ -63,7 +63,7 @@ impl Table {
                 Ok(())
             }
             Some(columns) => {
-                let (found, expected) = (fields(text).count(), columns.len());
+                let (found, expected) = (text.split(',').count(), columns.len());
                 if found != expected {
                     return Err(BagError::FieldCount { file: file.into(), line, expected, found });
                 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use planner::se3_geom::nalgebra::{Isometry2, SVector, Similarity2, UnitQuaternion, Vector2, Vector3};
-use planner::se3_geom::{Pose, rotation_from_xyzw, xyzw_from_rotation};
+use planner::se3_geom::{Pose, pose_from_xyzw, rotation_from_xyzw, xyzw_from_rotation};
 use pose_bag::{POSE_COLUMNS, PoseSet, Table, read_poses, read_table};
 
 use crate::failure::Failure;
@@ -150,7 +150,10 @@ fn rows_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Rows, Fail
             rotation_from_xyzw([row[0], row[1], row[2], row[3]]).map_err(|reason| reason.to_string())
         })?),
         Manifold::Se2 => Points::PlanarPoses(values.iter().map(|row| planar_pose(row)).collect()),
-        Manifold::Se3 => Points::Poses(table.poses().map_err(Failure::bad_input)?),
+        Manifold::Se3 => Points::Poses(checked(table, &values, |row| {
+            pose_from_xyzw([row[0], row[1], row[2]], [row[3], row[4], row[5], row[6]])
+                .map_err(|reason| reason.to_string())
+        })?),
         Manifold::Sim2 => Points::Similarities(checked(table, &values, |row| match row[3] {
             scale if scale > 0.0 => Ok(Similarity2::from_isometry(planar_pose(row), scale)),
             scale => Err(format!("scale is not positive: {scale}")),
