@@ -160,7 +160,7 @@ pub(crate) fn closes<M: Manifold>(path: &Curve<M>) -> bool {
     }
     let ring = path.joined();
     let gaps = ring.gaps();
-    if !look_independent(&gaps) {
+    if !look_independent(&gaps, true) {
         return false;
     }
     let found = sweep(&ring, beyond_ends(&gaps));

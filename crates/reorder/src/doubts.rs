@@ -90,20 +90,22 @@ pub(crate) fn of_ends(at: [usize; 2]) -> Doubt {
 /// A doubt at the middle of the first stretch that looks like two passes of a curve whose points fall between each other: gaps
 /// that alternate, while every second point alone is spaced far more evenly.
 fn of_interleaving<M: Manifold>(curve: &Curve<M>, gaps: &[f64]) -> Option<Doubt> {
+    let n = curve.len();
     let looks_interleaved = |first: usize| {
-        let gaps = &gaps[first..first + ALTERNATING_GAPS];
+        let gaps: Vec<f64> = (first..first + ALTERNATING_GAPS).map(|k| gaps[k % gaps.len()]).collect();
         let alternates = gaps.windows(3).all(|g| (g[1] > g[0]) == (g[1] > g[2]) && g[1] != g[0]);
         let strides: Vec<f64> =
-            (first..first + ALTERNATING_GAPS - 1).map(|k| curve.distance(k, (k + 2) % curve.len())).collect();
+            (first..first + ALTERNATING_GAPS - 1).map(|k| curve.distance(k % n, (k + 2) % n)).collect();
         let together = mean_change(gaps.iter().zip(&gaps[1..]));
         let apart = mean_change(strides.iter().zip(&strides[2..]));
         alternates && together > UNEVEN && MORE_EVEN * apart < together
     };
     let last = gaps.len().checked_sub(ALTERNATING_GAPS)?;
-    let first = (0..=last).find(|&first| looks_interleaved(first))?;
+    // Around a loop a stretch may begin at any point.
+    let first = (0..if curve.closed { n } else { last + 1 }).find(|&first| looks_interleaved(first))?;
     let middle = first + ALTERNATING_GAPS / 2;
     let why = "the gaps alternate here, and every second point alone is spaced far more evenly: the curve may run back beside itself";
-    Some(Doubt { at: curve.rows_at(middle, middle + 1), why: why.to_owned() })
+    Some(Doubt { at: curve.rows_at(middle % n, (middle + 1) % n), why: why.to_owned() })
 }
 
 /// Root mean square of the logarithm of the ratios.

@@ -7,7 +7,7 @@ use crate::certificate::Certificate;
 use crate::curve::Curve;
 use crate::denoise::denoised;
 use crate::doubts::{self, Doubts};
-use crate::error::OrderError;
+use crate::error::{OrderError, check_points};
 use crate::independence::look_independent;
 use crate::ordering::{Doubt, Method, MethodChoice, Options, Ordering, Repair, Repaired, Topology, Verdict};
 use crate::recovery::{Recovery, recover};
@@ -30,9 +30,10 @@ pub const MOST_REPAIRED_UNASKED: usize = 3000;
 /// where smaller rows win, nor on isometries of the manifold beyond rounding.
 ///
 /// # Errors
-/// [`OrderError`]: fewer than two distinct points (three for a closed curve), coordinates that are not finite, a start that is out of
+/// [`OrderError`]: fewer than two distinct points (three for a closed curve), coordinates that are not finite or no point, a start that is out of
 /// range or no end of the open curve.
 pub fn order<M: Manifold>(manifold: &M, points: &[M::Point], options: &Options) -> Result<Ordering, OrderError> {
+    check_points(manifold, points)?;
     order_among(manifold, &[], points, options)
 }
 
@@ -214,7 +215,7 @@ fn examine_curve<M: Manifold>(curve: &Curve<M>, repeated: &[bool], unsure_of_end
     let found = sweep(curve, beyond_ends(&gaps));
     let certificate = Certificate::of_curve(curve, &gaps, &found);
     let certified = certificate.conditions(curve.closed).iter().all(|condition| condition.holds);
-    let explained = certified && look_independent(&gaps);
+    let explained = certified && look_independent(&gaps, curve.closed);
     let mut doubts = doubts::of_curve(curve, &gaps, &found, repeated, explained);
     if unsure_of_ends {
         doubts.firm.push(doubts::of_ends(curve.rows_at(0, curve.len() - 1)));
