@@ -28,7 +28,7 @@ pub(crate) fn smoothness<M: Manifold>(curve: &Curve<M>, reach: f64) -> Smoothnes
     let mut found = Smoothness { turn_rad: 0.0, roughness: 0.0, zigzag: 0 };
     // Whether the order turns back between a point and the next.
     let mut back = vec![false; curve.len()];
-    for k in 0..curve.len() {
+    for (k, back) in back.iter_mut().enumerate() {
         let Some((before, after)) = curve.previous(k).zip(curve.next(k)) else { continue };
         if let Some(cosine) = curve.cosine(k, before, after) {
             found.turn_rad = found.turn_rad.max(std::f64::consts::PI - cosine.clamp(-1.0, 1.0).acos());
@@ -46,7 +46,7 @@ pub(crate) fn smoothness<M: Manifold>(curve: &Curve<M>, reach: f64) -> Smoothnes
         let allowed = (THIRD_DERIVATIVE / 6.0 * spans / (reach * reach)).max(MISS_TO_GAP * g0.min(g1).min(g2));
         found.roughness = found.roughness.max(third * spans / allowed);
         let turns = |bend, a: f64, b: f64| curve.manifold.norm(q, bend) * a.max(b) > STRAIGHT;
-        back[k] = turns(here, g0, g1) && turns(there, g1, g2) && curve.manifold.inner(q, here, there) < 0.0;
+        *back = turns(here, g0, g1) && turns(there, g1, g2) && curve.manifold.inner(q, here, there) < 0.0;
     }
     found.zigzag = longest_run(&back, curve.closed);
     found

@@ -97,9 +97,8 @@ fn a_straight_line_never_turns_back() {
         let (from, along) = (random.vector(), random.vector());
         let points: Vec<_> = (0..40).map(|k| from + along * (f64::from(k) + 0.2 * random.signed())).collect();
         let found = order(&R3::default(), &points, &Options::default()).unwrap();
-        if found.verdict == Verdict::Ambiguous {
-            println!("{:?}", found.doubts);
-        }
-        assert_eq!(found.certificate.zigzag, 0, "{:?}", found.certificate);
+        // Now and then twelve jittered gaps alternate by chance, which is a doubt.
+        let expected = if found.doubts.is_empty() { Verdict::Certified } else { Verdict::Ambiguous };
+        assert_eq!((found.verdict, found.certificate.zigzag), (expected, 0), "{:?}", found.certificate);
     }
 }

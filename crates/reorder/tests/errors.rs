@@ -146,7 +146,7 @@ fn flat_spaces_refuse_what_is_no_point() {
             .iter()
             .map(|&x| SVector::<f64, N>::zeros().map_with_location(|i, _, _| if i + 1 == N { x } else { 1.0 }))
             .collect();
-        assert_refuses(&Euclidean::<N>, |t| SVector::repeat(t), &bad, &[]);
+        assert_refuses(&Euclidean::<N>, SVector::repeat, &bad, &[]);
     }
     flat::<1>();
     flat::<2>();
