@@ -32,11 +32,15 @@ const UNREPAIRED: Options = Options {
     denoise: false,
 };
 
+/// A function drawn at random.
+type Drawn<A, B> = fn(&mut Random) -> Box<dyn Fn(A) -> B>;
+
 /// A space in which the same points can be written down in several ways.
 struct Written<P> {
     /// A random curve over [0, 2π], closed.
-    curve: fn(&mut Random) -> Box<dyn Fn(f64) -> P>,
+    curve: Drawn<f64, P>,
     /// A random motion of all points that keeps their distances.
+    #[expect(clippy::type_complexity, reason = "a name would say no more")]
     motion: fn(&mut Random) -> Box<dyn Fn(&P) -> P>,
     /// The same point in a unit of length that is so many times shorter; `None` where nothing is a length.
     in_unit: Option<fn(&P, f64) -> P>,
