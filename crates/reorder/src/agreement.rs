@@ -38,10 +38,10 @@ pub(crate) fn of_trees<M: Manifold>(
     points: &[M::Point],
     options: &Options,
 ) -> Result<Vec<Doubt>, OrderError> {
-    let edges = recovery.edges();
+    let edges = recovery.bonds();
     let mut found = Vec::new();
     for Variant { manifold, change } in variants {
-        let kept = recover(manifold, points, options, None)?.edges();
+        let kept = recover(manifold, points, options, None)?.bonds();
         if kept == edges {
             continue;
         }

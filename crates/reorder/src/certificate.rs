@@ -18,6 +18,11 @@ const OPENING: f64 = 4.0;
 const CLOSING: f64 = 2.0;
 /// Fewer points say too little about the curve between them.
 const FEWEST_POINTS: usize = 12;
+/// Samples of a smooth curve miss the parabola through their neighbours by (gap/radius)²/6 gaps or so: 0.25 of a gap is a turn of 70
+/// degrees a gap, or noise of a tenth of a gap.
+const CLEAN_NOISE: f64 = 0.25;
+/// Noise turns back at every second point: of thirty noisy points, six in a row do as a rule.
+const CLEAN_ZIGZAG: usize = 5;
 /// A smooth curve turns back at an inflection, and there once.
 const ZIGZAG: usize = 3;
 
@@ -60,6 +65,8 @@ pub struct Certificate {
     /// Greatest miss of a point from the parabola through the point before and two points after it, in units of what a smooth
     /// curve of that reach allows there. Above 1 the samples are noisy, or too sparse to show that they are not.
     pub roughness: f64,
+    /// Nine of ten points miss that parabola by no more than this share of the shortest gap around: noise, or sparse samples.
+    pub noise: f64,
     /// How many points in a row turn back against the turn before. A smooth curve does so at inflections only.
     pub zigzag: usize,
     /// Distance of the ends (open), or closing gap (closed), in units of the longest other gap.
@@ -99,10 +106,9 @@ impl Certificate {
         ]
     }
 
-    /// Whether the points look like a clean sample with ε up to 1.
-    pub(crate) fn is_dense_and_smooth(&self) -> bool {
-        let epsilon = self.usable_reach.map_or(0.0, |reach| self.required_reach / reach);
-        epsilon <= 1.0 && self.roughness <= 1.0 && self.zigzag <= ZIGZAG
+    /// Whether the points look like a clean sample of a smooth curve, so that searches can tell one order from another.
+    pub(crate) fn is_clean(&self) -> bool {
+        self.noise <= CLEAN_NOISE && self.zigzag <= CLEAN_ZIGZAG
     }
 
     /// Figures where the order is no curve: nothing holds.
@@ -123,13 +129,14 @@ impl Certificate {
             turn_rad: 0.0,
             roughness: f64::MAX,
             zigzag: 0,
+            noise: f64::MAX,
             opening: None,
         }
     }
 
     pub(crate) fn of_curve<M: Manifold>(curve: &Curve<M>, gaps: &[f64], found: &Sweep) -> Self {
         let max_gap = gaps.iter().copied().fold(0.0, f64::max);
-        let Smoothness { turn_rad, roughness, zigzag } = smoothness(curve, found.reach);
+        let Smoothness { turn_rad, roughness, zigzag, noise } = smoothness(curve, found.reach);
         let epsilons = edge_epsilons(gaps, found);
         let weakest = (0..epsilons.len()).max_by(|&a, &b| epsilons[a].total_cmp(&epsilons[b]));
         let last = curve.len() - 1;
@@ -145,6 +152,7 @@ impl Certificate {
             turn_rad,
             roughness,
             zigzag,
+            noise,
             opening: finite(curve.distance(last, 0) / longest_inside),
             ..Self::of_no_curve(curve.manifold, max_gap)
         }
@@ -160,7 +168,7 @@ pub(crate) fn closes<M: Manifold>(path: &Curve<M>) -> bool {
     }
     let ring = path.joined();
     let gaps = ring.gaps();
-    if !look_independent(&gaps) {
+    if !look_independent(&gaps, true) {
         return false;
     }
     let found = sweep(&ring, beyond_ends(&gaps));

@@ -5,7 +5,7 @@ use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
 
 use crate::duplicates::ROUNDING_SHARE;
-use crate::error::OrderError;
+use crate::error::{OrderError, check_points};
 use crate::order::order;
 use crate::ordering::{Options, Ordering};
 use crate::spanning_tree::{Tree, minimum_spanning_tree};
@@ -128,6 +128,7 @@ pub fn order_components<M: Manifold>(
     points: &[M::Point],
     options: &Options,
 ) -> Result<Components, OrderError> {
+    check_points(manifold, points)?;
     let Split { curves, outliers, separation } = split(&minimum_spanning_tree(manifold, points)?);
     let mut found = Components { curves: Vec::new(), outliers, separation };
     for rows in curves {

@@ -8,6 +8,7 @@ use se3_geom::Manifold;
 
 use crate::curve::Curve;
 use crate::ordering::Doubt;
+use crate::smoothness::longest_run;
 use crate::spanning_tree::Tree;
 use crate::sweep::{LOCAL_EPSILON, Sweep};
 
@@ -58,6 +59,9 @@ pub(crate) struct Doubts {
     pub(crate) firm: Vec<Doubt>,
     /// What may come of a wrong order or of sparse samples: agreement of many searches answers it.
     pub(crate) searchable: Vec<Doubt>,
+    /// Most points in a row with such doubts: a few where the curve crosses or nearly touches itself, all where it runs beside
+    /// itself.
+    pub(crate) stretch: usize,
 }
 
 /// Every doubt about an order of distinct points; `repeated` tells which rows stand for several equal points.
@@ -80,7 +84,11 @@ pub(crate) fn of_curve<M: Manifold>(
     let (ends, inner): (Vec<_>, Vec<_>) = (0..curve.len()).partition(|&k| is_end(k));
     let of_vertices = |all: Vec<usize>| all.into_iter().flat_map(|k| of_vertex(curve, found, k)).collect::<Vec<_>>();
     let firm = few.into_iter().chain(interleaving).chain(edges).chain(of_vertices(ends)).collect();
-    Doubts { firm, searchable: of_vertices(inner) }
+    let in_dispute = |k: usize| found.rivals[k].is_some() || found.sparse[k].is_some();
+    // A point between two that are in dispute is so too.
+    let between = |k: usize| curve.previous(k).zip(curve.next(k)).is_some_and(|(a, b)| in_dispute(a) && in_dispute(b));
+    let disputed: Vec<bool> = (0..curve.len()).map(|k| in_dispute(k) || between(k)).collect();
+    Doubts { firm, searchable: of_vertices(inner), stretch: longest_run(&disputed, curve.closed) }
 }
 
 /// The ends of an open curve, where they come near each other.
@@ -91,20 +99,22 @@ pub(crate) fn of_ends(at: [usize; 2]) -> Doubt {
 /// A doubt at the middle of the first stretch that looks like two passes of a curve whose points fall between each other: gaps
 /// that alternate, while every second point alone is spaced far more evenly.
 fn of_interleaving<M: Manifold>(curve: &Curve<M>, gaps: &[f64]) -> Option<Doubt> {
+    let n = curve.len();
     let looks_interleaved = |first: usize| {
-        let gaps = &gaps[first..first + ALTERNATING_GAPS];
+        let gaps: Vec<f64> = (first..first + ALTERNATING_GAPS).map(|k| gaps[k % gaps.len()]).collect();
         let alternates = gaps.windows(3).all(|g| (g[1] > g[0]) == (g[1] > g[2]) && g[1] != g[0]);
         let strides: Vec<f64> =
-            (first..first + ALTERNATING_GAPS - 1).map(|k| curve.distance(k, (k + 2) % curve.len())).collect();
+            (first..first + ALTERNATING_GAPS - 1).map(|k| curve.distance(k % n, (k + 2) % n)).collect();
         let together = mean_change(gaps.iter().zip(&gaps[1..]));
         let apart = mean_change(strides.iter().zip(&strides[2..]));
         alternates && together > UNEVEN && MORE_EVEN * apart < together
     };
     let last = gaps.len().checked_sub(ALTERNATING_GAPS)?;
-    let first = (0..=last).find(|&first| looks_interleaved(first))?;
+    // Around a loop a stretch may begin at any point.
+    let first = (0..if curve.closed { n } else { last + 1 }).find(|&first| looks_interleaved(first))?;
     let middle = first + ALTERNATING_GAPS / 2;
     let why = "the gaps alternate here, and every second point alone is spaced far more evenly: the curve may run back beside itself";
-    Some(Doubt { at: curve.rows_at(middle, middle + 1), why: why.to_owned() })
+    Some(Doubt { at: curve.rows_at(middle % n, (middle + 1) % n), why: why.to_owned() })
 }
 
 /// Root mean square of the logarithm of the ratios.

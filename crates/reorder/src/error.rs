@@ -1,5 +1,7 @@
 //! Why no order can be given.
 
+use se3_geom::{LogError, Manifold};
+
 /// Input that no order exists for. Points are named by their 0-based input row.
 ///
 /// An order that is merely uncertain is no error: it comes back as [`Verdict::Ambiguous`](crate::Verdict::Ambiguous).
@@ -35,6 +37,12 @@ pub enum OrderError {
         /// Input row of the point.
         index: usize,
     },
+    /// Finite coordinates that are no point of the manifold: a quaternion or a direction whose squared norm is more than 1e-6 off 1.
+    #[error("point {index} is not on the manifold: a quaternion or a direction must have norm 1")]
+    NotAPoint {
+        /// Input row of the point.
+        index: usize,
+    },
     /// Two finite points whose distance is no finite number.
     #[error("the distance between points {} and {} overflows", at[0], at[1])]
     DistanceOverflow {
@@ -63,4 +71,17 @@ pub enum OrderError {
         /// What was given.
         value: f64,
     },
+}
+
+/// Refuses the first point that is none, before anything is measured.
+pub(crate) fn check_points<M: Manifold>(manifold: &M, points: &[M::Point]) -> Result<(), OrderError> {
+    for (index, p) in points.iter().enumerate() {
+        if !manifold.is_finite(p) {
+            return Err(OrderError::NonFinite { index });
+        }
+        if matches!(manifold.log(p, p), Err(LogError::NotAPoint)) {
+            return Err(OrderError::NotAPoint { index });
+        }
+    }
+    Ok(())
 }

@@ -7,7 +7,7 @@ use crate::certificate::Certificate;
 use crate::curve::Curve;
 use crate::denoise::denoised;
 use crate::doubts::{self, Doubts};
-use crate::error::OrderError;
+use crate::error::{OrderError, check_points};
 use crate::independence::look_independent;
 use crate::ordering::{Doubt, Method, MethodChoice, Options, Ordering, Repair, Repaired, Topology, Verdict};
 use crate::recovery::{Recovery, recover};
@@ -18,6 +18,10 @@ use crate::tour::Problem;
 
 /// Sets of more points are repaired only on demand: the searches would take minutes.
 pub const MOST_REPAIRED_UNASKED: usize = 3000;
+
+/// So many points in a row may be in dispute where a curve crosses itself or turns sharply; where it runs beside itself, many more
+/// are.
+const LONGEST_DISPUTE: usize = 12;
 
 /// Orders points sampled from a curve, by the exact minimum spanning tree under the manifold's own distance, and by a short path
 /// of little turning where that tree is no order to trust.
@@ -30,9 +34,10 @@ pub const MOST_REPAIRED_UNASKED: usize = 3000;
 /// where smaller rows win, nor on isometries of the manifold beyond rounding.
 ///
 /// # Errors
-/// [`OrderError`]: fewer than two distinct points (three for a closed curve), coordinates that are not finite, a start that is out of
+/// [`OrderError`]: fewer than two distinct points (three for a closed curve), coordinates that are not finite or no point, a start that is out of
 /// range or no end of the open curve.
 pub fn order<M: Manifold>(manifold: &M, points: &[M::Point], options: &Options) -> Result<Ordering, OrderError> {
+    check_points(manifold, points)?;
     order_among(manifold, &[], points, options)
 }
 
@@ -137,10 +142,11 @@ struct Examined {
 }
 
 impl Examined {
-    /// Doubts about neighbourhoods give way to a search that found none, if the points are dense and smooth enough for a search to
-    /// tell: on noisy or sparse points all searches agree on the same wrong order every tenth time.
+    /// Doubts about neighbourhoods give way to searches that found none, if the points are clean enough for a search to tell, and the
+    /// doubts are about places where the curve crosses itself or nearly does: on noisy points, and where a curve runs back beside
+    /// itself, all searches agree on the same wrong order too often.
     fn hear(&mut self, of_search: Vec<Doubt>) {
-        if self.certificate.is_dense_and_smooth() {
+        if self.certificate.is_clean() && self.doubts.stretch <= LONGEST_DISPUTE {
             self.doubts.searchable = of_search;
         } else {
             self.doubts.searchable.extend(of_search);
@@ -185,7 +191,7 @@ fn examine_tree<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recov
     if !branches.is_empty() {
         let longest = tree.edge_weights().copied().fold(0.0, f64::max);
         let certificate = Certificate::of_no_curve(manifold, longest);
-        let doubts = Doubts { firm: Vec::new(), searchable: branches };
+        let doubts = Doubts { searchable: branches, ..Doubts::default() };
         return Examined { certificate, certified: false, doubts };
     }
     let mut repeated = vec![false; points.len()];
@@ -214,7 +220,7 @@ fn examine_curve<M: Manifold>(curve: &Curve<M>, repeated: &[bool], unsure_of_end
     let found = sweep(curve, beyond_ends(&gaps));
     let certificate = Certificate::of_curve(curve, &gaps, &found);
     let certified = certificate.conditions(curve.closed).iter().all(|condition| condition.holds);
-    let explained = certified && look_independent(&gaps);
+    let explained = certified && look_independent(&gaps, curve.closed);
     let mut doubts = doubts::of_curve(curve, &gaps, &found, repeated, explained);
     if unsure_of_ends {
         doubts.firm.push(doubts::of_ends(curve.rows_at(0, curve.len() - 1)));

@@ -3,7 +3,7 @@
 use se3_geom::{Pose, Se3};
 
 use crate::agreement::Variant;
-use crate::error::OrderError;
+use crate::error::{OrderError, check_points};
 use crate::order::order_among;
 use crate::ordering::{Options, Ordering};
 use crate::weight::{Weight, Weighted, automatic_weight};
@@ -39,6 +39,7 @@ pub fn order_weighted<M: Weighted>(
         metric.ok_or(OrderError::InvalidLengthScale { value: length })
     };
     let metric = metric_at(1.0)?;
+    check_points(&metric, points)?;
     let variants = [
         Variant { manifold: metric_at(0.5)?, change: "with half as many metres per radian" },
         Variant { manifold: metric_at(2.0)?, change: "with twice as many metres per radian" },

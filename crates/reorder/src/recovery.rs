@@ -69,6 +69,12 @@ impl Recovery {
         edges.sort_unstable();
         edges
     }
+    /// The neighbours, or, where the tree branches, its edges: whom its walk puts beside each other depends on the end it starts from.
+    pub(crate) fn bonds(&self) -> Vec<(usize, usize)> {
+        let tree = &self.distinct.tree;
+        let branches = tree.node_indices().any(|node| tree.neighbors(node).count() > 2);
+        if branches { self.tree_edges() } else { self.edges() }
+    }
     /// The neighbours as (smaller row, greater row), ascending.
     pub(crate) fn edges(&self) -> Vec<(usize, usize)> {
         let closing = self.rows.last().zip(self.rows.first()).filter(|_| self.closed);

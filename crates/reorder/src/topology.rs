@@ -3,6 +3,7 @@
 use se3_geom::Manifold;
 
 use crate::curve::Curve;
+use crate::independence::look_independent;
 
 /// How many gaps next to an end say what is usual there.
 const LOCAL_GAPS: usize = 5;
@@ -10,7 +11,10 @@ const LOCAL_GAPS: usize = 5;
 /// more than this: a minimum spanning tree leaves out the longest edge of a loop, which on an even sample is hardly longer than
 /// the next. An even arc whose ends are one and a half gaps apart is an open arc.
 const CLOSING_TO_LONGEST: [f64; 2] = [1.1, 1.5];
-/// … and this many times the longest of the gaps next to both ends.
+/// Where the gaps look like those of independent points, the closing gap may exceed the longest other by this many mean gaps: the
+/// greatest of exponential gaps does so once in e² = 7.4 times.
+const EXCEEDING: f64 = 2.0;
+/// Elsewhere it is at most this many times the longest of the gaps next to both ends.
 const CLOSING_TO_LOCAL: f64 = 2.0;
 
 /// What the distance between both ends of a path says.
@@ -24,8 +28,9 @@ pub(crate) enum Closing {
     Apart,
 }
 
-/// The ends meet where the closing gap is ≤ 1.1 to 1.5 × the longest gap (the more, the less even the ten gaps next to the ends
-/// are) and ≤ 2 × the longest of the five gaps next to either end, and the curve turns by less than 90° (by log) at both ends.
+/// The ends of independent points meet where the closing gap exceeds the longest gap by no more than two mean gaps. Those of other points
+/// meet where the closing gap is ≤ 1.1 to 1.5 × the longest gap (the more, the less even the ten gaps next to the ends
+/// are) and ≤ 2 × the longest of the five gaps next to either end. Either way the curve turns by less than 90° (by log) at both ends.
 /// They are near if only the gap is short enough, or if the gap is up to twice 1.5 times those bounds and the curve goes on so.
 pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
     let last = path.len() - 1;
@@ -36,7 +41,10 @@ pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
     let [local_first, local_last] = beyond_ends(&gaps);
     let [even, uneven] = CLOSING_TO_LONGEST;
     let within = |factor: f64| (factor * longest(&gaps)).min(local_first.max(local_last));
-    let (allowed, suspicious) = (within(spread_at_ends(&gaps).clamp(even, uneven)), 2.0 * within(uneven));
+    let (mut allowed, suspicious) = (within(spread_at_ends(&gaps).clamp(even, uneven)), 2.0 * within(uneven));
+    if look_independent(&gaps, false) {
+        allowed = allowed.max(longest(&gaps) + EXCEEDING * gaps.iter().sum::<f64>() / gaps.len() as f64);
+    }
     let closing_gap = path.distance(0, last);
     let goes_on = |at, before, after| path.cosine(at, before, after).is_some_and(|c| c < 0.0);
     let goes_on = goes_on(0, last, 1) && goes_on(last, last - 1, 0);

@@ -4,7 +4,7 @@ use petgraph::graph::NodeIndex;
 use petgraph::visit::EdgeRef;
 use se3_geom::{Manifold, PlanarTwist, Se2, Se3, Sim2, SimilarityTwist, Twist};
 
-use crate::error::OrderError;
+use crate::error::{OrderError, check_points};
 use crate::order::MOST_REPAIRED_UNASKED;
 use crate::repair::TURNING;
 use crate::spanning_tree::{Tree, minimum_spanning_tree};
@@ -74,7 +74,7 @@ const MOST_WEIGHED: usize = 20_000;
 /// translations scales L. Where there are no rotations, or nothing else, every L gives one order, and 1 is returned.
 ///
 /// # Errors
-/// As [`minimum_spanning_tree`].
+/// As [`minimum_spanning_tree`], and [`OrderError::NotAPoint`].
 ///
 /// ```
 /// use reorder::automatic_weight;
@@ -92,10 +92,7 @@ const MOST_WEIGHED: usize = 20_000;
 /// ```
 pub fn automatic_weight<M: Weighted>(points: &[M::Point]) -> Result<f64, OrderError> {
     let Some(unit) = M::with_metres_per_radian(1.0) else { return Ok(1.0) };
-    // Refuses what is not finite before anything is measured.
-    if let Some(index) = points.iter().position(|p| !unit.is_finite(p)) {
-        return Err(OrderError::NonFinite { index });
-    }
+    check_points(&unit, points)?;
     let stride = points.len().div_ceil(MOST_WEIGHED).max(1);
     let points: Vec<M::Point> = points.iter().step_by(stride).cloned().collect();
     let points = points.as_slice();

@@ -7,6 +7,7 @@ mod support;
 use reorder::{Options, Ordering, Repair, Topology, TopologyChoice, Verdict, order, order_poses};
 use se3_geom::nalgebra::{UnitQuaternion, Vector3};
 use se3_geom::{Manifold, Pose, R3, Se3, So3};
+use support::permutations::permutations;
 use support::{Random, helix_pose, loop_pose, neighbours, shuffled, unshuffled};
 
 fn helix(n: usize) -> Vec<Pose> {
@@ -112,15 +113,6 @@ fn the_order_is_the_shortest_of_all_permutations() {
         // Eight summands in either direction: a few ε.
         assert!(length(&found) <= shortest * (1.0 + 1e-14), "n = {n}");
     }
-}
-
-fn permutations(n: usize) -> Vec<Vec<usize>> {
-    if n == 0 {
-        return vec![Vec::new()];
-    }
-    let shorter = permutations(n - 1);
-    let insert = |rows: &Vec<usize>, at: usize| [&rows[..at], &[n - 1], &rows[at..]].concat();
-    shorter.iter().flat_map(|rows| (0..n).map(move |at| insert(rows, at))).collect()
 }
 
 #[test]

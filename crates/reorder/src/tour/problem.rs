@@ -5,6 +5,10 @@ use se3_geom::Manifold;
 /// How many nearest points every point may be joined to by one move of the search.
 const NEIGHBOURS: usize = 8;
 
+/// What an end of an open path costs, in units of its turning back there: a point goes on nowhere in any order, but an order that
+/// could leave a turn unpaid at either end would put its ends in the bends of the curve.
+const END: f64 = 0.5;
+
 /// Points on a manifold, and one more node, [`Problem::opening`], that is at distance 0 from all: a closed tour through it is an
 /// open path through the points.
 pub(crate) struct Problem<'a, M: Manifold> {
@@ -98,10 +102,15 @@ impl<'a, M: Manifold> Problem<'a, M> {
         let Some(second) = near.iter().find(behind) else { return false };
         (first.node, second.node) == (a, b) || (first.node, second.node) == (b, a)
     }
-    /// ‖log_p(a) + log_p(b)‖: 0 where the path goes straight on through p in even steps, twice the step where it turns back.
+    /// ‖log_p(a) + log_p(b)‖: 0 where the path goes straight on through p in even steps, twice the step where it turns back. At an end
+    /// half the step.
     pub(crate) fn turn(&self, a: usize, p: usize, b: usize) -> f64 {
-        if [a, p, b].contains(&self.opening()) {
+        let opening = self.opening();
+        if p == opening {
             return 0.0;
+        }
+        if a == opening || b == opening {
+            return END * self.distance(p, if a == opening { b } else { a });
         }
         match self.log(p, a).zip(self.log(p, b)) {
             Some((u, v)) => self.manifold.norm(&self.points[p], u + v),

@@ -3,6 +3,11 @@
 use se3_geom::R2;
 use se3_geom::nalgebra::Vector2;
 
+#[path = "../../tests/support/permutations.rs"]
+mod permutations;
+
+use permutations::permutations;
+
 use super::random::Random;
 use super::search::Search;
 use super::{Effort, Problem, closed_tour, greedy, open_path};
@@ -59,15 +64,6 @@ fn what_is_taken_back_is_as_it_was() {
     assert_ne!(search.nodes(), (0..41).collect::<Vec<_>>());
     search.take_back();
     assert_eq!(search.nodes(), (0..41).collect::<Vec<_>>());
-}
-
-fn permutations(n: usize) -> Vec<Vec<usize>> {
-    if n == 0 {
-        return vec![Vec::new()];
-    }
-    let shorter = permutations(n - 1);
-    let insert = |rows: &Vec<usize>, at: usize| [&rows[..at], &[n - 1], &rows[at..]].concat();
-    shorter.iter().flat_map(|rows| (0..n).map(move |at| insert(rows, at))).collect()
 }
 
 /// On random points, where nothing is easy.

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test binary uses its own part of it")]
 
 pub(crate) mod harmonics;
+pub(crate) mod permutations;
 
 use se3_geom::Pose;
 use se3_geom::nalgebra::{Isometry3, UnitQuaternion, Vector3};
