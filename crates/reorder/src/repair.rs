@@ -1,6 +1,7 @@
 //! Orders where the minimum spanning tree is no path, or a path that something speaks against.
 
 use se3_geom::Manifold;
+use tracing::debug_span;
 
 use crate::curve::Curve;
 use crate::ordering::TopologyChoice;
@@ -31,6 +32,7 @@ pub(crate) fn sequence<M: Manifold>(
     preferred: &[(usize, usize)],
     topology: TopologyChoice,
 ) -> Sequence {
+    let _phase = debug_span!("search").entered();
     let open = open_path(problem, turning, greedy(problem, preferred), Effort::Kicks);
     if topology == TopologyChoice::Open {
         return Sequence { rows: open, closed: false, unsure_of_ends: false };
