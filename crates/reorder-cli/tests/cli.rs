@@ -276,11 +276,13 @@ fn order_tells_several_curves_apart() {
     let row = |x: f64, k: u32| format!("{},{}\n", x + f64::from(k), (0.1 * f64::from(k)).sin());
     let rows: String = (0..20).map(|k| row(0.0, k) + &row(100.0, k)).collect();
     let path = file(&folder, "two.csv", &format!("x,y\n{rows}-500,0\n"));
-    let evens = serde_json::json!((0..20).map(|k| 2 * k).collect::<Vec<_>>());
-    let odds = serde_json::json!((0..20).map(|k| 2 * k + 1).collect::<Vec<_>>());
-    for (choice, parts) in [("one", 0), ("auto", 2)] {
+    let [evens, odds] = [0, 1].map(|first| (0..20).map(|k| first + 2 * k).collect::<Vec<_>>());
+    let back = |rows: &[i32]| rows.iter().rev().copied().collect::<Vec<_>>();
+    // As one, the order starts at row 39 and ends at the outlier.
+    let expected = [[back(&evens), back(&odds)], [evens.clone(), odds.clone()]];
+    for ((choice, parts), expected) in [("one", 0), ("auto", 2)].into_iter().zip(expected) {
         let found = object(&["order", &path, "--components", choice]);
-        assert_eq!(found["components"], serde_json::json!([evens, odds]), "{choice}");
+        assert_eq!(found["components"], serde_json::json!(expected), "{choice}");
         assert_eq!(found["outliers"], serde_json::json!([40]));
         assert_eq!(found["parts"].as_array().unwrap().len(), parts);
         assert_eq!(found["verdict"], if choice == "one" { "ambiguous" } else { "plausible" });

@@ -54,18 +54,13 @@ fn name_components<M: Manifold>(manifold: &M, points: &[M::Point], found: &mut O
         found.outliers.clear();
         return;
     }
+    found.sort_components();
     let mut piece = vec![0; found.n];
-    for (k, rows) in found.components.iter_mut().enumerate() {
-        rows.iter().for_each(|&row| piece[row] = k + 1);
-        rows.clear();
+    for (k, rows) in found.components.iter().enumerate() {
+        rows.iter().for_each(|&row| piece[row] = k);
     }
     for (k, &row) in found.outliers.iter().enumerate() {
-        piece[row] = found.components.len() + 1 + k;
-    }
-    for &row in &found.order {
-        if let Some(rows) = piece[row].checked_sub(1).and_then(|k| found.components.get_mut(k)) {
-            rows.push(row);
-        }
+        piece[row] = found.components.len() + k;
     }
     let jumps = found.order.windows(2).filter(|w| piece[w[0]] != piece[w[1]]);
     let length = |w: &[usize]| manifold.distance(&points[w[0]], &points[w[1]]);

@@ -90,19 +90,20 @@ fn recover_named<M: Manifold>(
         .collect();
 
     let mut rows: Vec<usize> = nodes.into_iter().map(row_of).collect();
+    if closed {
+        cut_at_longest(&Curve::new(manifold, points, &rows, true).gaps(), &mut rows);
+    }
     let path = Curve::new(manifold, points, &rows, false);
     let ends = closing(&path);
-    let meets = ends == Closing::Meets || is_chain && closes(&path);
-    let drawn_as_one = !is_chain && joins.is_empty();
     let is_loop = match options.topology {
-        TopologyChoice::Auto => closed || !drawn_as_one && meets,
+        // Both ends of an arc that bends back draw the edge between them.
+        TopologyChoice::Auto if closed => ends != Closing::Apart || closes(&path),
+        // A curve that the method drew with two ends has them.
+        TopologyChoice::Auto => (is_chain || !joins.is_empty()) && (ends == Closing::Meets || closes(&path)),
         TopologyChoice::Open => false,
         TopologyChoice::Closed => true,
     };
     let unsure_of_ends = options.topology == TopologyChoice::Auto && !is_loop && ends != Closing::Apart;
-    if closed && !is_loop {
-        cut_at_longest(&path.joined().gaps(), &mut rows);
-    }
     let start_row = start.map(row_of);
     let ends = [rows[0], rows[rows.len() - 1]];
     match start_row {

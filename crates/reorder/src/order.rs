@@ -5,7 +5,7 @@ use tracing::debug_span;
 
 use crate::agreement::{Variant, examine_sequence, of_trees};
 use crate::certificate::Certificate;
-use crate::components::split;
+use crate::components::{Split, split};
 use crate::curve::Curve;
 use crate::denoise::denoised;
 use crate::doubts::{self, Doubts};
@@ -172,9 +172,11 @@ impl Examined {
         let mut doubts = self.doubts.searchable;
         doubts.extend(self.doubts.firm);
         // An order that nothing speaks against is one curve.
-        let pieces = (!doubts.is_empty())
-            .then(|| split(&recovery.distinct.tree).with_equal_points(&recovery.distinct.groups))
-            .unwrap_or_default();
+        let pieces = if doubts.is_empty() {
+            Split::default()
+        } else {
+            split(&recovery.distinct.tree).with_equal_points(&recovery.distinct.groups)
+        };
         let groups = recovery.distinct.groups;
         let mut group_of = vec![0; n];
         for (k, group) in groups.iter().enumerate() {

@@ -201,6 +201,13 @@ impl Ordering {
         rows
     }
 
+    /// Puts the rows of each component in the order of all.
+    pub(crate) fn sort_components(&mut self) {
+        let mut place = vec![0; self.n];
+        self.order.iter().enumerate().for_each(|(k, &row)| place[row] = k);
+        self.components.iter_mut().for_each(|rows| rows.sort_by_key(|&row| place[row]));
+    }
+
     /// For every row the first row of those that hold the same point.
     pub(crate) fn names(&self) -> Vec<usize> {
         let mut name: Vec<usize> = (0..self.n).collect();

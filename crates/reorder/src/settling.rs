@@ -4,8 +4,11 @@ use se3_geom::Manifold;
 
 use crate::ordering::{Ordering, Topology};
 
+/// A gap so many times longer than the one beside it is the one to look into.
+const FAR_LONGER: f64 = 3.0;
+
 /// Adds to every doubt between which two neighbours of the order one more point of the curve would settle it: the two that the doubt
-/// is about, or else the longer gap at the point between them, or the longest next to either.
+/// is about, unless a gap beside them is far longer, or else the longer gap at the point between them, or the longest next to either.
 pub(crate) fn say_what_would_settle<M: Manifold>(manifold: &M, points: &[M::Point], found: &mut Ordering) {
     if found.doubts.is_empty() {
         return;
@@ -29,12 +32,13 @@ pub(crate) fn say_what_would_settle<M: Manifold>(manifold: &M, points: &[M::Poin
         let [i, j] = doubt.at.map(|row| name[row]);
         let gaps_at = |row: usize| neighbours[row].iter().map(move |&other| [row, other]);
         let common = gaps_at(i).filter(|[_, k]| neighbours[j].contains(k)).flat_map(|[_, k]| [[i, k], [k, j]]);
-        let between = match neighbours[i].contains(&j) {
-            true => Some([i, j]),
-            false => common.max_by(|a, b| length(a).total_cmp(&length(b))),
+        let longest = || gaps_at(i).chain(gaps_at(j)).max_by(|a, b| length(a).total_cmp(&length(b)));
+        let between = if neighbours[i].contains(&j) {
+            longest().map(|beside| if length(&beside) > FAR_LONGER * length(&[i, j]) { beside } else { [i, j] })
+        } else {
+            common.max_by(|a, b| length(a).total_cmp(&length(b))).or_else(longest)
         };
-        let around = || gaps_at(i).chain(gaps_at(j)).max_by(|a, b| length(a).total_cmp(&length(b)));
-        if let Some([a, b]) = between.or_else(around) {
+        if let Some([a, b]) = between {
             doubt.why += &format!("; a point of the curve between points {a} and {b} would settle it");
         }
     }

@@ -25,9 +25,7 @@ impl Ordering {
         let away = |row: usize| manifold.distance(from, &points[row]);
         if self.parts.is_empty() {
             self.order = turned(&self.order, self.topology, &name, away);
-            if let [only] = &mut self.components[..] {
-                only.clone_from(&self.order);
-            }
+            self.sort_components();
             return self;
         }
         for (rows, part) in self.components.iter_mut().zip(&self.parts) {
