@@ -122,23 +122,12 @@ fn order_from(
     poses: &[Pose],
     start: Option<&DVector<f64>>,
 ) -> Result<Ordering, Refusal> {
-    let mut options = config.ordering();
-    let ordering = order_poses(poses, config.metres_per_radian, &options)?;
-    let (None, Some(start)) = (options.start, start) else { return Ok(ordering) };
-    let Some(metric) = Se3::with_metres_per_radian(config.metres_per_radian) else { return Ok(ordering) };
-    let tool = robot.chain.forward(start);
-    let from_tool = |index: usize| metric.distance(&tool, &poses[index]);
-    let nearest = match ordering.topology {
-        Topology::Open => {
-            let (first, last) = (ordering.order[0], ordering.order[ordering.order.len() - 1]);
-            if from_tool(last) < from_tool(first) { last } else { first }
-        }
-        Topology::Closed => {
-            ordering.order.iter().copied().min_by(|&a, &b| from_tool(a).total_cmp(&from_tool(b))).unwrap_or(0)
-        }
-    };
-    options.start = Some(nearest);
-    Ok(order_poses(poses, config.metres_per_radian, &options)?)
+    let ordering = order_poses(poses, config.metres_per_radian, &config.ordering())?;
+    let metric = Se3::with_metres_per_radian(config.metres_per_radian);
+    Ok(match (config.start, start, metric) {
+        (None, Some(start), Some(metric)) => ordering.starting_near(&metric, poses, &robot.chain.forward(start)),
+        _ => ordering,
+    })
 }
 
 fn not_certain_enough(ordering: Ordering, config: &Config) -> Refusal {

@@ -1,28 +1,47 @@
 //! What speaks for and against an order, for a person.
 
-use planner::reorder::{Ordering, Topology, Verdict};
+use planner::reorder::{EdgeFigures, Method, Ordering, Topology, Verdict};
 
 /// Doubts that are written out; the rest is counted.
 const SHOWN: usize = 12;
+/// Edges that are written out.
+const WORST: usize = 5;
 
-pub(crate) fn explain(ordering: &Ordering) -> String {
-    let topology = match ordering.topology {
+pub(crate) fn explain(ordering: &Ordering, edges: &[EdgeFigures]) -> String {
+    let curve = |topology| match topology {
         Topology::Open => "an open curve",
         Topology::Closed => "a closed curve",
+    };
+    let shape = match ordering.parts.len() {
+        0 => curve(ordering.topology).to_owned(),
+        parts => format!("{parts} curves, {} of them on none", ordering.outliers.len()),
     };
     let verdict = match ordering.verdict {
         Verdict::Certified => "certified: the hypotheses of a reconstruction theorem hold with margin",
         Verdict::Plausible => "plausible: every test agrees, nothing is proven",
         Verdict::Ambiguous => "ambiguous: something speaks against this order",
     };
-    let mut lines = vec![format!("{} points on {topology}", ordering.n), format!("verdict     {verdict}")];
-    lines.push(match &ordering.repaired {
-        Some(repaired) => format!(
+    let mut lines = vec![format!("{} points on {shape}", ordering.n), format!("verdict     {verdict}")];
+    for (rows, part) in ordering.components.iter().zip(&ordering.parts) {
+        let (n, first) = (rows.len(), rows[0]);
+        let verdict = format!("{:?}", part.verdict).to_lowercase();
+        lines.push(format!("curve       {n} points from point {first} on: {}, {verdict}", curve(part.topology)));
+    }
+    if !ordering.outliers.is_empty() {
+        let rows: Vec<String> = ordering.outliers.iter().take(SHOWN).map(usize::to_string).collect();
+        let more = if ordering.outliers.len() > SHOWN { ", …" } else { "" };
+        lines.push(format!("apart       {} points on no curve: {}{more}", ordering.outliers.len(), rows.join(", ")));
+    }
+    lines.push(match (ordering.method, &ordering.repaired) {
+        (_, Some(repaired)) => format!(
             "method      short path of little turning: it leaves {} edges of the minimum spanning tree and has {} of its own",
             repaired.dropped.len(),
             repaired.added.len()
         ),
-        None => "method      minimum spanning tree".to_owned(),
+        (Method::NnCrust, _) => "method      NN-CRUST: nearest neighbours on either side".to_owned(),
+        (Method::Crust, _) => "method      CRUST: Voronoi and Delaunay edges".to_owned(),
+        (Method::Nearest, _) => "method      nearest-neighbour chain".to_owned(),
+        (Method::Mst | Method::Repaired, _) => "method      minimum spanning tree".to_owned(),
     });
     if let Some(length) = ordering.metres_per_radian {
         let kept = if ordering.weight_stable == Some(true) { "the same" } else { "another" };
@@ -36,6 +55,11 @@ pub(crate) fn explain(ordering: &Ordering) -> String {
         lines.push(format!(
             "reach       {reach:.6} estimated; epsilon = gap/(2 reach) = {epsilon:.3}, theorems ask for < 1"
         ));
+    }
+    let mut worst: Vec<&EdgeFigures> = edges.iter().filter(|edge| edge.epsilon > 0.0).collect();
+    worst.sort_by(|a, b| b.epsilon.total_cmp(&a.epsilon));
+    for EdgeFigures { at: [a, b], gap, epsilon, .. } in worst.into_iter().take(WORST) {
+        lines.push(format!("edge        points {a} and {b}: gap {gap:.6}, epsilon {epsilon:.3}"));
     }
     if let Some((radius, margin)) = certificate.injectivity_radius.zip(certificate.margin) {
         lines.push(format!("geodesics   unique within {radius:.6}: {margin:.6} more than the longest gap"));

@@ -1,10 +1,12 @@
 //! The `reorder` command: orders poses, and plans trajectories through them.
 
+mod ask;
 mod explain;
 mod failure;
 mod order;
 mod output;
 mod plan;
+mod progress;
 mod simulate;
 mod source;
 

@@ -2,14 +2,17 @@
 
 use clap::{Args, ValueEnum};
 use planner::reorder::{
-    MethodChoice, Options, OrderError, Ordering, Repair, TopologyChoice, Verdict, Weight, order, order_weighted,
+    ComponentsChoice, EdgeFigures, MethodChoice, Options, Ordering, Repair, TopologyChoice, Verdict, Weight,
 };
-use planner::se3_geom::{Euclidean, Se2, Se3, Sim2, So3, Sphere};
+use serde::Serialize;
+use tracing::debug_span;
 
+use crate::ask::Ask;
 use crate::explain::explain;
 use crate::failure::Failure;
 use crate::output::print;
-use crate::source::{Manifold, Points, Rows, Source};
+use crate::progress::with_progress;
+use crate::source::{Manifold, Rows, Source};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -30,6 +33,13 @@ pub(crate) struct Arguments {
     /// Row (counted from 0) at which the order starts
     #[arg(long, value_name = "INDEX")]
     start: Option<usize>,
+    /// Start at the end of the curve (of a closed one: at the point) nearest to these values of the manifold's columns, as
+    /// x,y,z,qx,qy,qz,qw of a pose
+    #[arg(long, value_name = "VALUES", value_delimiter = ',', allow_hyphen_values = true, conflicts_with = "start")]
+    start_at: Option<Vec<f64>>,
+    /// One curve through all points, or as many as are clearly apart, with outliers in none
+    #[arg(long, default_value = "one")]
+    components: Components,
     /// Search for a shorter and smoother order where the minimum spanning tree is none to trust
     #[arg(long, default_value = "auto")]
     repair: RepairChoice,
@@ -39,6 +49,9 @@ pub(crate) struct Arguments {
     /// Print what speaks for and against the order, for a person, in place of the order
     #[arg(long, conflicts_with = "format")]
     explain: bool,
+    /// Add gap, reach and epsilon of every edge to the JSON object
+    #[arg(long, conflicts_with = "explain")]
+    edges: bool,
     /// What to print
     #[arg(long, default_value = "json")]
     format: Format,
@@ -46,10 +59,25 @@ pub(crate) struct Arguments {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Method {
-    /// The best method there is
+    /// Minimum spanning tree, repaired where needed
     Auto,
     /// Minimum spanning tree
     Mst,
+    /// Nearest neighbours on either side of every point
+    NnCrust,
+    /// Voronoi and Delaunay edges, in the plane
+    Crust,
+    /// Always on to the nearest point left, from --start or else row 0; mostly wrong from within an arc
+    Nearest,
+}
+
+/// As [`ComponentsChoice`].
+#[derive(Clone, Copy, ValueEnum)]
+enum Components {
+    /// One curve; several are named in the answer
+    One,
+    /// Each curve by itself where gaps jump by a factor of 3
+    Auto,
 }
 
 /// As [`Repair`].
@@ -98,14 +126,26 @@ enum Format {
     Csv,
 }
 
+/// The object of `--edges`.
+#[derive(Serialize)]
+struct WithEdges<'a> {
+    #[serde(flatten)]
+    ordering: &'a Ordering,
+    edges: &'a [EdgeFigures],
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let rows = arguments.source.rows(arguments.manifold)?;
-    let mut ordering = order_points(arguments, &rows.points)
-        .map_err(|error| Failure::BadInput(format!("{}: {error}", arguments.source.input.display())))?;
+    let (rows, mut ordering, edges) = with_progress(|| {
+        let rows = debug_span!("reading").in_scope(|| arguments.source.rows(arguments.manifold))?;
+        let (ordering, edges) = ask(arguments)
+            .order(&rows)
+            .map_err(|why| Failure::BadInput(format!("{}: {why}", arguments.source.input.display())))?;
+        Ok((rows, ordering, edges))
+    })?;
     // Without rotations and translations to weigh against each other, there is no weight that the order could hang on.
     ordering.weight_stable.get_or_insert(true);
     if arguments.explain {
-        return print(&explain(&ordering));
+        return print(&explain(&ordering, &edges));
     }
     if ordering.verdict == Verdict::Ambiguous && !matches!(arguments.format, Format::Json) {
         // The other formats have no place for it, and an order that is in doubt must not pass for a sure one.
@@ -117,19 +157,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         );
     }
     print(&match arguments.format {
-        Format::Json => serde_json::to_string(&ordering).map_err(Failure::bad_input)? + "\n",
+        Format::Json if arguments.edges => json(&WithEdges { ordering: &ordering, edges: &edges })?,
+        Format::Json => json(&ordering)?,
         Format::Indices => ordering.order.iter().map(|row| format!("{row}\n")).collect(),
         Format::Csv => csv(&rows, &ordering.order),
     })
 }
 
-fn order_points(arguments: &Arguments, points: &Points) -> Result<Ordering, OrderError> {
+fn json(object: &impl Serialize) -> Result<String, Failure> {
+    Ok(serde_json::to_string(object).map_err(Failure::bad_input)? + "\n")
+}
+
+fn ask(arguments: &Arguments) -> Ask<'_> {
     let options = Options {
         topology: arguments.topology.into(),
         start: arguments.start,
         method: match arguments.method {
             Method::Auto => MethodChoice::Auto,
             Method::Mst => MethodChoice::Mst,
+            Method::NnCrust => MethodChoice::NnCrust,
+            Method::Crust => MethodChoice::Crust,
+            Method::Nearest => MethodChoice::Nearest,
         },
         repair: match arguments.repair {
             RepairChoice::Auto => Repair::Auto,
@@ -137,22 +185,13 @@ fn order_points(arguments: &Arguments, points: &Points) -> Result<Ordering, Orde
             RepairChoice::Off => Repair::Off,
         },
         denoise: arguments.denoise,
+        components: match arguments.components {
+            Components::One => ComponentsChoice::One,
+            Components::Auto => ComponentsChoice::Auto,
+        },
     };
-    let weight = arguments.metres_per_radian;
-    match points {
-        Points::Plane(points) => order(&Euclidean::<2>, points, &options),
-        Points::Space(points) => order(&Euclidean::<3>, points, &options),
-        Points::Flat4(points) => order(&Euclidean::<4>, points, &options),
-        Points::Flat5(points) => order(&Euclidean::<5>, points, &options),
-        Points::Flat6(points) => order(&Euclidean::<6>, points, &options),
-        Points::Flat7(points) => order(&Euclidean::<7>, points, &options),
-        Points::Flat8(points) => order(&Euclidean::<8>, points, &options),
-        Points::Sphere(points) => order(&Sphere, points, &options),
-        Points::Rotations(points) => order(&So3, points, &options),
-        Points::PlanarPoses(points) => order_weighted::<Se2>(points, weight, &options),
-        Points::Poses(points) => order_weighted::<Se3>(points, weight, &options),
-        Points::Similarities(points) => order_weighted::<Sim2>(points, weight, &options),
-    }
+    let with_edges = arguments.edges || arguments.explain;
+    Ask { options, weight: arguments.metres_per_radian, from: arguments.start_at.as_deref(), with_edges }
 }
 
 fn csv(rows: &Rows, order: &[usize]) -> String {

@@ -146,18 +146,13 @@ fn rows_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Rows, Fail
             }
         },
         Manifold::S2 => Points::Sphere(checked(table, &values, direction)?),
-        Manifold::So3 => Points::Rotations(checked(table, &values, |row| {
-            rotation_from_xyzw([row[0], row[1], row[2], row[3]]).map_err(|reason| reason.to_string())
-        })?),
-        Manifold::Se2 => Points::PlanarPoses(values.iter().map(|row| planar_pose(row)).collect()),
+        Manifold::So3 => Points::Rotations(checked(table, &values, rotation)?),
+        Manifold::Se2 => Points::PlanarPoses(checked(table, &values, planar_pose)?),
         Manifold::Se3 => Points::Poses(checked(table, &values, |row| {
             pose_from_xyzw([row[0], row[1], row[2]], [row[3], row[4], row[5], row[6]])
                 .map_err(|reason| reason.to_string())
         })?),
-        Manifold::Sim2 => Points::Similarities(checked(table, &values, |row| match row[3] {
-            scale if scale > 0.0 => Ok(Similarity2::from_isometry(planar_pose(row), scale)),
-            scale => Err(format!("scale is not positive: {scale}")),
-        })?),
+        Manifold::Sim2 => Points::Similarities(checked(table, &values, similarity)?),
     };
     Ok(Rows { points, columns: columns.into_iter().map(str::to_owned).collect(), values })
 }
@@ -166,12 +161,31 @@ fn flat<const N: usize>(values: &[Vec<f64>]) -> Vec<SVector<f64, N>> {
     values.iter().map(|row| SVector::from_column_slice(row)).collect()
 }
 
-fn planar_pose(row: &[f64]) -> Isometry2<f64> {
-    Isometry2::new(Vector2::new(row[0], row[1]), row[2])
+pub(crate) fn coordinates<const N: usize>(row: &[f64]) -> Result<SVector<f64, N>, String> {
+    Ok(SVector::from_column_slice(row))
+}
+
+pub(crate) fn rotation(row: &[f64]) -> Result<UnitQuaternion<f64>, String> {
+    rotation_from_xyzw([row[0], row[1], row[2], row[3]]).map_err(|reason| reason.to_string())
+}
+
+pub(crate) fn pose(row: &[f64]) -> Result<Pose, String> {
+    Ok(Pose::from_parts(Vector3::new(row[0], row[1], row[2]).into(), rotation(&row[3..])?))
+}
+
+pub(crate) fn planar_pose(row: &[f64]) -> Result<Isometry2<f64>, String> {
+    Ok(Isometry2::new(Vector2::new(row[0], row[1]), row[2]))
+}
+
+pub(crate) fn similarity(row: &[f64]) -> Result<Similarity2<f64>, String> {
+    match row[3] {
+        scale if scale > 0.0 => Ok(Similarity2::from_isometry(planar_pose(row)?, scale)),
+        scale => Err(format!("scale is not positive: {scale}")),
+    }
 }
 
 /// Latitude and longitude in degrees; longitudes may go round more than once.
-fn direction(row: &[f64]) -> Result<Vector3<f64>, String> {
+pub(crate) fn direction(row: &[f64]) -> Result<Vector3<f64>, String> {
     let [latitude, longitude] = [row[0], row[1]];
     if latitude.abs() > 90.0 {
         return Err(format!("lat is beyond 90 degrees: {latitude}"));

@@ -245,3 +245,85 @@ fn order_explains_itself_and_takes_a_weight() {
         "{said}"
     );
 }
+
+fn object(arguments: &[&str]) -> serde_json::Value {
+    serde_json::from_str(&out(&reorder(arguments))).unwrap()
+}
+
+#[test]
+fn order_by_every_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(&folder, "arc.csv", &arc("x,y", |a| format!("{},{}", a.cos(), a.sin())));
+    let expected: Vec<u64> = (0..10).map(|k| (7 * k) % 10).collect();
+    for method in ["auto", "mst", "nn-crust", "crust", "nearest"] {
+        let found = object(&["order", &path, "--method", method]);
+        assert_eq!(found["method"], if method == "auto" { "mst" } else { method });
+        assert_eq!(found["order"], serde_json::json!(expected), "{method}");
+    }
+    // Row 5 is place 5, from where the chain runs to one end and jumps back.
+    let chain = object(&["order", &path, "--method", "nearest", "--start", "5"]);
+    assert_eq!((&chain["order"][0], &chain["verdict"]), (&5.into(), &"ambiguous".into()));
+    let near = object(&["order", &path, "--method", "nearest", "--start-at=-1,9"]);
+    assert_eq!(near["order"], serde_json::json!(expected.iter().rev().collect::<Vec<_>>()));
+    let poses = format!("{BAGS}/lasa_sine");
+    let (code, said) = refusal(&["order", &poses, "--method", "crust"]);
+    assert!(code == 2 && said.ends_with("lasa_sine: CRUST orders points of the plane only"), "{said}");
+}
+
+#[test]
+fn order_tells_several_curves_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |x: f64, k: u32| format!("{},{}\n", x + f64::from(k), (0.1 * f64::from(k)).sin());
+    let rows: String = (0..20).map(|k| row(0.0, k) + &row(100.0, k)).collect();
+    let path = file(&folder, "two.csv", &format!("x,y\n{rows}-500,0\n"));
+    let [evens, odds] = [0, 1].map(|first| (0..20).map(|k| first + 2 * k).collect::<Vec<_>>());
+    let back = |rows: &[i32]| rows.iter().rev().copied().collect::<Vec<_>>();
+    // As one, the order starts at row 39 and ends at the outlier.
+    let expected = [[back(&evens), back(&odds)], [evens.clone(), odds.clone()]];
+    for ((choice, parts), expected) in [("one", 0), ("auto", 2)].into_iter().zip(expected) {
+        let found = object(&["order", &path, "--components", choice]);
+        assert_eq!(found["components"], serde_json::json!(expected), "{choice}");
+        assert_eq!(found["outliers"], serde_json::json!([40]));
+        assert_eq!(found["parts"].as_array().unwrap().len(), parts);
+        assert_eq!(found["verdict"], if choice == "one" { "ambiguous" } else { "plausible" });
+    }
+    let text = out(&reorder(&["order", &path, "--components", "auto", "--explain"]));
+    assert!(text.starts_with("41 points on 2 curves, 1 of them on none\n"), "{text}");
+    assert!(text.contains("curve       20 points from point 0 on: an open curve, certified\n"), "{text}");
+    assert!(text.contains("apart       1 points on no curve: 40\n"), "{text}");
+    let (code, said) = refusal(&["order", &path, "--components", "auto", "--start", "40"]);
+    assert!(code == 2 && said.ends_with("the start 40 stands apart from every curve"), "{said}");
+}
+
+#[test]
+fn order_starts_near_a_pose_and_prints_its_edges() {
+    let half = |a: f64| ((0.5 * a).sin(), (0.5 * a).cos());
+    let folder = tempfile::tempdir().unwrap();
+    let columns = "x,y,z,qx,qy,qz,qw";
+    let table = arc(columns, |a| format!("{},0,{},0,{},0,{}", a.cos(), a.sin(), half(a).0, half(a).1));
+    let path = file(&folder, "arc.csv", &table);
+    let from = "--start-at=0,0,2,0,0.7071067811865476,0,0.7071067811865476";
+    let found = object(&["order", &path, from, "--edges"]);
+    let expected: Vec<u64> = (0..10).rev().map(|k| (7 * k) % 10).collect();
+    assert_eq!(found["order"], serde_json::json!(expected));
+    let edges = found["edges"].as_array().unwrap();
+    assert_eq!(edges.len(), 9);
+    for (k, edge) in edges.iter().enumerate() {
+        assert_eq!(edge["at"], serde_json::json!(expected[k..k + 2]));
+        assert!(edge["gap"].as_f64().unwrap() > 0.0 && edge["epsilon"].as_f64().unwrap() >= 0.0);
+    }
+    assert!(object(&["order", &path])["edges"].is_null());
+    let text = out(&reorder(&["order", &path, "--explain"]));
+    assert!(text.lines().filter(|line| line.starts_with("edge        points ")).count() == 5, "{text}");
+    let (code, said) = refusal(&["order", &path, "--start-at=1,2"]);
+    assert!(code == 2 && said.ends_with("finite numbers, for the columns x,y,z,qx,qy,qz,qw, not 1,2"), "{said}");
+    let (code, said) = refusal(&["order", &path, "--start-at=1,2,3,0,0,0,0"]);
+    assert!(code == 2 && said.contains("--start-at: the quaternion is zero"), "{said}");
+    assert_eq!(reorder(&["order", &path, "--start-at=1,2", "--start", "0"]).status.code(), Some(2));
+}
+
+#[test]
+fn order_says_nothing_on_standard_error_when_nobody_watches() {
+    let output = reorder(&["order", &format!("{BAGS}/lasa_sine")]);
+    assert!(output.status.success() && output.stderr.is_empty());
+}

@@ -191,7 +191,7 @@ fn usable_reach(reach: f64, injectivity_radius: f64) -> f64 {
 }
 
 /// For every gap ε = gap/(2·smallest ball at its ends).
-fn edge_epsilons(gaps: &[f64], found: &Sweep) -> Vec<f64> {
+pub(crate) fn edge_epsilons(gaps: &[f64], found: &Sweep) -> Vec<f64> {
     let n = found.balls.len();
     gaps.iter().enumerate().map(|(k, gap)| gap / (2.0 * found.balls[k].min(found.balls[(k + 1) % n]))).collect()
 }

@@ -1,5 +1,6 @@
 //! Several curves in one set of points.
 
+use petgraph::graph::NodeIndex;
 use petgraph::unionfind::UnionFind;
 use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
@@ -7,7 +8,7 @@ use se3_geom::Manifold;
 use crate::duplicates::ROUNDING_SHARE;
 use crate::error::{OrderError, check_points};
 use crate::order::order;
-use crate::ordering::{Options, Ordering};
+use crate::ordering::{ComponentsChoice, Options, Ordering};
 use crate::spanning_tree::{Tree, minimum_spanning_tree};
 
 /// Curves are apart if the tree's edge between them is at least this many times the longest edge within either. The longest of
@@ -19,7 +20,7 @@ pub const FEWEST_OF_A_CURVE: usize = 3;
 const POINTS_PER_PIECE: usize = 8;
 
 /// Rows that belong together, and how clearly.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Split {
     /// The rows of each curve, ascending; the curves by their first row.
     pub curves: Vec<Vec<usize>>,
@@ -64,24 +65,24 @@ pub struct Components {
 /// it; curves of different density are told apart by doing so again within each piece. Nothing is cut where that would leave more
 /// than one piece in eight points, or no curve.
 pub fn split(tree: &Tree) -> Split {
-    let mut pieces = vec![tree.node_indices().map(|node| tree[node]).collect::<Vec<usize>>()];
-    let mut edges: Vec<(f64, [usize; 2])> =
+    let mut edges: Vec<Edge> =
         tree.edge_references().map(|e| (*e.weight(), [e.source().index(), e.target().index()])).collect();
     edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut pieces = vec![Piece { nodes: (0..tree.node_count()).collect(), edges }];
+    let mut place = vec![0; tree.node_count()];
     let (mut done, mut separation) = (Vec::new(), None);
-    let node_of: std::collections::HashMap<usize, usize> =
-        tree.node_indices().map(|node| (tree[node], node.index())).collect();
-    while let Some(rows) = pieces.pop() {
-        let mut inside = vec![false; tree.node_count()];
-        rows.iter().for_each(|row| inside[node_of[row]] = true);
-        let within: Vec<_> = edges.iter().copied().filter(|(_, [a, b])| inside[*a] && inside[*b]).collect();
-        match jump(&within, rows.len()).map(|cut| (cut, parts(tree, &rows, &node_of, &within[cut..]))) {
-            Some((cut, parts)) if parts.iter().any(|part| part.len() >= FEWEST_OF_A_CURVE) => {
-                let ratio = within[cut - 1].0 / within[cut].0;
+    while let Some(piece) = pieces.pop() {
+        match piece.jump().map(|cut| (cut, piece.parts(cut, &mut place))) {
+            Some((cut, parts)) if parts.iter().any(|part| part.nodes.len() >= FEWEST_OF_A_CURVE) => {
+                let ratio = piece.edges[cut - 1].0 / piece.edges[cut].0;
                 separation = Some(separation.map_or(ratio, |least: f64| least.min(ratio)));
                 pieces.extend(parts);
             }
-            _ => done.push(rows),
+            _ => {
+                let mut rows: Vec<usize> = piece.nodes.iter().map(|&node| tree[NodeIndex::new(node)]).collect();
+                rows.sort_unstable();
+                done.push(rows);
+            }
         }
     }
     done.sort();
@@ -91,58 +92,108 @@ pub fn split(tree: &Tree) -> Split {
     Split { curves, outliers, separation }
 }
 
-/// How many of the edges, longest first, stand before the first jump. Edges between equal points are none.
-fn jump(edges: &[(f64, [usize; 2])], points: usize) -> Option<usize> {
-    let rounding = ROUNDING_SHARE * edges.first()?.0;
-    let most = points / POINTS_PER_PIECE;
-    let jumps = |k: &usize| edges[*k].0 > rounding && edges[k - 1].0 >= APART * edges[*k].0;
-    (1..edges.len()).take(most).find(jumps)
+/// Length and nodes.
+type Edge = (f64, [usize; 2]);
+
+/// A part of the tree.
+struct Piece {
+    nodes: Vec<usize>,
+    /// Longest first.
+    edges: Vec<Edge>,
 }
 
-/// The rows that the edges hold together, each ascending.
-fn parts(
-    tree: &Tree,
-    rows: &[usize],
-    node_of: &std::collections::HashMap<usize, usize>,
-    edges: &[(f64, [usize; 2])],
-) -> Vec<Vec<usize>> {
-    let mut joined = UnionFind::<usize>::new(tree.node_count());
-    for &(_, [a, b]) in edges {
-        joined.union(a, b);
+impl Piece {
+    /// How many of the edges stand before the first jump. Edges between equal points are none.
+    fn jump(&self) -> Option<usize> {
+        let edges = &self.edges;
+        let rounding = ROUNDING_SHARE * edges.first()?.0;
+        let most = self.nodes.len() / POINTS_PER_PIECE;
+        let jumps = |k: &usize| edges[*k].0 > rounding && edges[k - 1].0 >= APART * edges[*k].0;
+        (1..edges.len()).take(most).find(jumps)
     }
-    let mut parts = std::collections::BTreeMap::<usize, Vec<usize>>::new();
-    for row in rows {
-        parts.entry(joined.find(node_of[row])).or_default().push(*row);
+
+    /// What is left when so many of the longest edges are cut. `place` has room for every node of the tree.
+    fn parts(&self, cut: usize, place: &mut [usize]) -> Vec<Piece> {
+        self.nodes.iter().enumerate().for_each(|(k, &node)| place[node] = k);
+        let mut joined = UnionFind::<usize>::new(self.nodes.len());
+        for &(_, [a, b]) in &self.edges[cut..] {
+            joined.union(place[a], place[b]);
+        }
+        let mut part_of_root = vec![usize::MAX; self.nodes.len()];
+        let mut parts: Vec<Piece> = Vec::new();
+        for (k, &node) in self.nodes.iter().enumerate() {
+            let part = &mut part_of_root[joined.find_mut(k)];
+            if *part == usize::MAX {
+                *part = parts.len();
+                parts.push(Piece { nodes: Vec::new(), edges: Vec::new() });
+            }
+            parts[*part].nodes.push(node);
+        }
+        for &edge in &self.edges[cut..] {
+            parts[part_of_root[joined.find_mut(place[edge.1[0]])]].edges.push(edge);
+        }
+        parts
     }
-    let mut parts: Vec<_> = parts.into_values().collect();
-    parts.iter_mut().for_each(|part| part.sort_unstable());
-    parts
+}
+
+impl Split {
+    /// The same where each row stands for the group that it is the first of; groups ascend.
+    pub(crate) fn with_equal_points(self, groups: &[Vec<usize>]) -> Self {
+        let all = |rows: Vec<usize>| {
+            let group_of =
+                |row: usize| groups.binary_search_by_key(&row, |group| group[0]).map_or(&[][..], |k| &groups[k]);
+            let mut all: Vec<usize> = rows.into_iter().flat_map(group_of).copied().collect();
+            all.sort_unstable();
+            all
+        };
+        Self { curves: self.curves.into_iter().map(all).collect(), outliers: all(self.outliers), ..self }
+    }
 }
 
 /// Orders each of several curves by itself, with its own topology. `options.start` applies to the curve that holds that row.
 ///
 /// # Errors
-/// As [`order`](crate::order()).
+/// As [`order`](crate::order()), and [`OrderError::StartApart`].
 pub fn order_components<M: Manifold>(
     manifold: &M,
     points: &[M::Point],
     options: &Options,
 ) -> Result<Components, OrderError> {
     check_points(manifold, points)?;
-    let Split { curves, outliers, separation } = split(&minimum_spanning_tree(manifold, points)?);
+    components_by(points, &minimum_spanning_tree(manifold, points)?, options.start, |own, start| {
+        order(manifold, own, &Options { start, components: ComponentsChoice::One, ..*options })
+    })
+}
+
+/// Each curve as `order_one` orders its points.
+pub(crate) fn components_by<P: Clone>(
+    points: &[P],
+    tree: &Tree,
+    start: Option<usize>,
+    order_one: impl Fn(&[P], Option<usize>) -> Result<Ordering, OrderError>,
+) -> Result<Components, OrderError> {
+    if let Some(start) = start.filter(|&start| start >= points.len()) {
+        return Err(OrderError::StartOutOfRange { start, count: points.len() });
+    }
+    let Split { curves, outliers, separation } = split(tree);
     let mut found = Components { curves: Vec::new(), outliers, separation };
     for rows in curves {
-        let own: Vec<M::Point> = rows.iter().map(|&row| points[row].clone()).collect();
-        let start = options.start.and_then(|start| rows.binary_search(&start).ok());
-        match order(manifold, &own, &Options { start, ..*options }) {
+        let own: Vec<P> = rows.iter().map(|&row| points[row].clone()).collect();
+        match order_one(&own, start.and_then(|start| rows.binary_search(&start).ok())) {
             Ok(ordering) => found.curves.push(Component { rows, ordering }),
             // One point that came several times, beside curves.
             Err(OrderError::AllEqual { .. } | OrderError::TooFewDistinct { .. }) if rows.len() < points.len() => {
                 found.outliers.extend(rows);
             }
+            Err(OrderError::StartNotAnEnd { start, ends }) => {
+                return Err(OrderError::StartNotAnEnd { start: rows[start], ends: ends.map(|k| rows[k]) });
+            }
             Err(error) => return Err(error),
         }
     }
     found.outliers.sort_unstable();
-    Ok(found)
+    match start.filter(|start| found.outliers.binary_search(start).is_ok()) {
+        Some(start) => Err(OrderError::StartApart { start }),
+        None => Ok(found),
+    }
 }

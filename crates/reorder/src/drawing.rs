@@ -44,6 +44,11 @@ impl Drawing {
         Self { count, edges }
     }
 
+    /// How many points there are.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
     /// The edges as (smaller row, greater row), ascending.
     pub fn edges(&self) -> &[[usize; 2]] {
         &self.edges

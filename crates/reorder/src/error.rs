@@ -65,6 +65,21 @@ pub enum OrderError {
         /// Input rows of the two ends.
         ends: [usize; 2],
     },
+    /// The wanted start lies on none of several curves that were told apart.
+    #[error("the start {start} stands apart from every curve")]
+    StartApart {
+        /// The wanted start.
+        start: usize,
+    },
+    /// CRUST is asked for where there is no plane.
+    #[error("CRUST orders points of the plane only")]
+    NotPlanar,
+    /// CRUST cannot triangulate these points.
+    #[error("CRUST cannot triangulate the points: {reason}")]
+    NoTriangulation {
+        /// What is wrong with a coordinate.
+        reason: spade::InsertionError,
+    },
     /// The length scale of SE(3) is no length.
     #[error("metres_per_radian is {value}, but it and its square must be positive finite numbers")]
     InvalidLengthScale {

@@ -43,6 +43,10 @@
 //! doubts about neighbourhoods are taken back, and the order is plausible; on noisy or sparser samples they stand, since there all
 //! searches agree on one wrong order too often.
 //!
+//! An order by a method that was asked for ([`MethodChoice`]) is also doubted where the method's edges are no single curve, and where the
+//! minimum spanning tree has others. Several curves ordered apart ([`ComponentsChoice`]) are trusted as the least of them is; with
+//! outliers beside them, nothing is certified. Every doubt says between which two points one more would settle it.
+//!
 //! What it cannot see: a curve that runs back along itself while its points happen to fall evenly between each other, or
 //! one that leaves out a stretch and goes straight on. No distance tells those from an honest curve.
 //!
@@ -80,12 +84,18 @@
 //! answer was never wrong on the random curves of `tests/random_orders.rs` (`cargo xtask soak orders`), sparse, uneven, noisy,
 //! crossing and retraced ones among them.
 //!
+//! # Progress
+//!
+//! The phases are spans of the [`tracing`](https://docs.rs/tracing) crate, at level debug: `spanning tree`, `certificate`, `search`. Nobody
+//! listening costs nothing.
+//!
 //! # Open or closed
 //!
 //! Told from the ends of the path: closed if their distance is at most 1.1 times the longest gap (up to 1.5 times where the gaps next
 //! to the ends are as uneven) and at most twice the longest of the five gaps next to either end, and the curve turns by less
 //! than 90° at both ends. Also closed where the gaps look like those of independent points, the closing gap is at most twice the
-//! longest, and the loop meets every condition of a certified order.
+//! longest, and the loop meets every condition of a certified order. Where a loop is asked for and the tree is a path that nothing
+//! speaks against, its ends are joined; elsewhere a short loop is sought.
 
 mod agreement;
 mod certificate;
@@ -96,8 +106,12 @@ mod denoise;
 mod doubts;
 mod drawing;
 mod duplicates;
+mod edges;
 mod error;
+mod finish;
+mod forest;
 mod independence;
+mod named;
 mod near_pairs;
 mod nearest;
 mod nn_crust;
@@ -106,9 +120,12 @@ mod ordering;
 mod poses;
 mod recovery;
 mod repair;
+mod settling;
 mod smoothness;
 mod spanning_tree;
+mod start;
 mod sweep;
+mod thread;
 mod topology;
 mod tour;
 mod walk;
@@ -118,12 +135,14 @@ pub use certificate::{Certificate, Condition};
 pub use components::{APART, Component, Components, FEWEST_OF_A_CURVE, Split, order_components, split};
 pub use crust::crust;
 pub use drawing::{Drawing, NoCurve, Strand};
+pub use edges::EdgeFigures;
 pub use error::OrderError;
 pub use nearest::nearest_chain;
 pub use nn_crust::nn_crust;
 pub use order::{MOST_REPAIRED_UNASKED, order};
 pub use ordering::{
-    Doubt, Method, MethodChoice, Options, Ordering, Repair, Repaired, Topology, TopologyChoice, Verdict,
+    ComponentsChoice, Doubt, Method, MethodChoice, Options, Ordering, Part, Repair, Repaired, Topology, TopologyChoice,
+    Verdict,
 };
 pub use petgraph;
 pub use poses::{order_poses, order_weighted};

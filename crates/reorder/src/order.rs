@@ -1,20 +1,26 @@
 //! The order of points on any manifold, with what speaks for and against it.
 
 use se3_geom::Manifold;
+use tracing::debug_span;
 
 use crate::agreement::{Variant, examine_sequence, of_trees};
 use crate::certificate::Certificate;
+use crate::components::{Split, split};
 use crate::curve::Curve;
 use crate::denoise::denoised;
 use crate::doubts::{self, Doubts};
 use crate::error::{OrderError, check_points};
+use crate::finish::{order_as_one, ordered};
 use crate::independence::look_independent;
-use crate::ordering::{Doubt, Method, MethodChoice, Options, Ordering, Repair, Repaired, Topology, Verdict};
-use crate::recovery::{Recovery, recover};
+use crate::ordering::{
+    Doubt, Method, MethodChoice, Options, Ordering, Repair, Repaired, Topology, TopologyChoice, Verdict,
+};
+use crate::recovery::{Recovery, recover, rows_along};
 use crate::repair::{Sequence, TURNING, sequence};
 use crate::sweep::sweep;
 use crate::topology::{beyond_ends, rotate_to};
 use crate::tour::Problem;
+use crate::walk::far_end;
 
 /// Sets of more points are repaired only on demand: the searches would take minutes.
 pub const MOST_REPAIRED_UNASKED: usize = 3000;
@@ -38,7 +44,7 @@ const LONGEST_DISPUTE: usize = 12;
 /// range or no end of the open curve.
 pub fn order<M: Manifold>(manifold: &M, points: &[M::Point], options: &Options) -> Result<Ordering, OrderError> {
     check_points(manifold, points)?;
-    order_among(manifold, &[], points, options)
+    ordered(manifold, &[], points, options)
 }
 
 /// As [`order`]; the order must be the same under every variant of the metric.
@@ -58,9 +64,10 @@ pub(crate) fn order_among<M: Manifold>(
     let stable = of_weight.is_empty();
     examined.doubts.searchable.extend(of_weight);
     let weight_stable = |found: Option<bool>| (!variants.is_empty()).then_some(found.unwrap_or(stable));
+    let joined = options.topology == TopologyChoice::Closed && is_clean_arc(manifold, points, &recovery);
     let mendable = !examined.doubts.searchable.is_empty()
         || recovery.distinct.groups.len() < points.len() && !examined.doubts.firm.is_empty();
-    if !mendable || !may_repair(points.len(), options) {
+    if !mendable || joined || !may_repair(points.len(), options) {
         let recovery =
             if options.start.is_some() { recover(manifold, points, options, options.start)? } else { recovery };
         return Ok(examined.answer(points.len(), recovery, weight_stable(None)));
@@ -83,8 +90,7 @@ pub(crate) fn order_among<M: Manifold>(
     examined.hear(agreement.doubts);
     let mut answer = examined.answer(points.len(), recovery, weight_stable(agreement.weight_stable));
     answer.topology = if found.closed { Topology::Closed } else { Topology::Open };
-    answer.order.clone_from(&found.rows);
-    answer.components = vec![found.rows];
+    answer.order = found.rows;
     answer.method = Method::Repaired;
     answer.repaired = Some(Repaired { dropped: missing(&before, &after), added: missing(&after, &before) });
     Ok(answer)
@@ -100,11 +106,25 @@ fn order_denoised<M: Manifold>(
     // Refuses what cannot be ordered before anything is measured.
     recover(manifold, points, &Options { start: None, ..*options }, options.start)?;
     let (onto_line, moved) = denoised(manifold, points, &Problem::new(manifold, points));
-    let mut found = order_among(manifold, variants, &onto_line, &Options { denoise: false, ..*options })?;
+    let mut found = order_as_one(manifold, variants, &onto_line, &Options { denoise: false, ..*options })?;
     // What is certified are the moved points, not the curve that the given ones were sampled from.
     found.verdict = found.verdict.min(Verdict::Plausible);
     found.moved = moved;
     Ok(found)
+}
+
+/// Whether nothing but the way back from its end speaks against the order. A search for a short loop would not go back: it would
+/// zigzag through the arc.
+fn is_clean_arc<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recovery) -> bool {
+    let tree = &recovery.distinct.tree;
+    if !doubts::of_tree(tree).is_empty() {
+        return false;
+    }
+    let rows = rows_along(tree, far_end(tree));
+    let arc = Curve::new(manifold, points, &rows, false);
+    let Doubts { firm, searchable, .. } = examine_curve(&arc, &recovery.repeated(points.len()), false).doubts;
+    // Equal points may be two passes of a loop that comes back over itself.
+    searchable.is_empty() && (firm.is_empty() || recovery.distinct.groups.len() == points.len())
 }
 
 fn may_repair(count: usize, options: &Options) -> bool {
@@ -135,10 +155,10 @@ fn turn_to_start(found: &mut Sequence, name: &[usize], start: Option<usize>) -> 
 }
 
 /// What is known about an order before the searches are compared.
-struct Examined {
+pub(crate) struct Examined {
     certificate: Certificate,
     certified: bool,
-    doubts: Doubts,
+    pub(crate) doubts: Doubts,
 }
 
 impl Examined {
@@ -154,9 +174,15 @@ impl Examined {
     }
 
     /// The order of the tree, with the verdict.
-    fn answer(self, n: usize, recovery: Recovery, weight_stable: Option<bool>) -> Ordering {
+    pub(crate) fn answer(self, n: usize, recovery: Recovery, weight_stable: Option<bool>) -> Ordering {
         let mut doubts = self.doubts.searchable;
         doubts.extend(self.doubts.firm);
+        // An order that nothing speaks against is one curve.
+        let pieces = if doubts.is_empty() {
+            Split::default()
+        } else {
+            split(&recovery.distinct.tree).with_equal_points(&recovery.distinct.groups)
+        };
         let groups = recovery.distinct.groups;
         let mut group_of = vec![0; n];
         for (k, group) in groups.iter().enumerate() {
@@ -165,7 +191,9 @@ impl Examined {
         let order: Vec<usize> = recovery.rows.iter().flat_map(|&row| &groups[group_of[row]]).copied().collect();
         Ordering {
             n,
-            components: vec![order.clone()],
+            components: pieces.curves,
+            parts: Vec::new(),
+            outliers: pieces.outliers,
             order,
             topology: if recovery.closed { Topology::Closed } else { Topology::Open },
             method: Method::Mst,
@@ -194,10 +222,12 @@ fn examine_tree<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recov
         let doubts = Doubts { searchable: branches, ..Doubts::default() };
         return Examined { certificate, certified: false, doubts };
     }
-    let mut repeated = vec![false; points.len()];
-    for group in &recovery.distinct.groups {
-        repeated[group[0]] = group.len() > 1;
-    }
+    examine_rows(manifold, points, recovery)
+}
+
+/// The order that `recovery` holds, however it was found.
+pub(crate) fn examine_rows<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recovery) -> Examined {
+    let repeated = recovery.repeated(points.len());
     let curve = Curve::new(manifold, points, &recovery.rows, recovery.closed);
     examine_curve(&curve, &repeated, recovery.unsure_of_ends)
 }
@@ -216,6 +246,7 @@ fn examine_repaired<M: Manifold>(manifold: &M, points: &[M::Point], found: &Sequ
 }
 
 fn examine_curve<M: Manifold>(curve: &Curve<M>, repeated: &[bool], unsure_of_ends: bool) -> Examined {
+    let _phase = debug_span!("certificate").entered();
     let gaps = curve.gaps();
     let found = sweep(curve, beyond_ends(&gaps));
     let certificate = Certificate::of_curve(curve, &gaps, &found);

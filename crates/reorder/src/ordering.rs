@@ -29,12 +29,18 @@ pub enum TopologyChoice {
 
 /// How the order was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// The minimum spanning tree, read as a path.
     Mst,
     /// A path that is short and turns little: Σ d + λ Σ ‖log_p(previous) + log_p(next)‖ with λ = 3, made small by local search.
     Repaired,
+    /// The edges of [`nn_crust`](crate::nn_crust()), pieced together where they are no single curve.
+    NnCrust,
+    /// The edges of [`crust`](crate::crust()), pieced together where they are no single curve.
+    Crust,
+    /// [`nearest_chain`](crate::nearest_chain).
+    Nearest,
 }
 
 /// Which method shall find the order.
@@ -46,6 +52,25 @@ pub enum MethodChoice {
     Auto,
     /// The minimum spanning tree and nothing else.
     Mst,
+    /// NN-CRUST, in O(n²) time.
+    NnCrust,
+    /// CRUST, in the plane.
+    Crust,
+    /// The nearest-neighbour chain from [`Options::start`] (row 0 without it), in O(n²) time. For comparison: it is mostly wrong
+    /// from within an arc.
+    Nearest,
+}
+
+/// How many curves the points shall be ordered along.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ComponentsChoice {
+    /// One curve through all points. Where they look like several, that is a doubt, and [`Ordering::components`] names them.
+    #[default]
+    One,
+    /// As many as [`split`](crate::split) tells apart, each with its own topology and verdict, and outliers in none. A curve with
+    /// one gap three times as long as all others comes apart there.
+    Auto,
 }
 
 /// Whether an order that something speaks against is sought again as a path that is short and turns little.
@@ -87,7 +112,8 @@ pub enum Verdict {
 pub struct Options {
     /// Open arc, closed curve, or told from the points.
     pub topology: TopologyChoice,
-    /// Input row that shall come first. On an open curve it must be one of the two ends.
+    /// Input row that shall come first. On an open curve it must be one of the two ends, except for [`MethodChoice::Nearest`].
+    /// To start near a given point, see [`Ordering::starting_near`].
     ///
     /// Without it an open curve starts at its end with the smaller row; a closed one at row 0, toward the neighbour with the
     /// smaller row.
@@ -99,6 +125,8 @@ pub struct Options {
     /// Whether the points are noisy, and each is to be moved onto the principal line of its neighbours before they are ordered.
     /// Never changes a point that is handed on: only the order comes from the moved ones, and a clean curve is better left alone.
     pub denoise: bool,
+    /// Whether the points may be samples of several curves.
+    pub components: ComponentsChoice,
 }
 
 /// A reason not to trust the order, and where.
@@ -110,6 +138,19 @@ pub struct Doubt {
     pub why: String,
 }
 
+/// One of several curves that were ordered apart. All rows are input rows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Part {
+    /// Whether its last point is followed by its first.
+    pub topology: Topology,
+    /// How its order was found.
+    pub method: Method,
+    /// How far that may be trusted.
+    pub verdict: Verdict,
+    /// Its sampling figures.
+    pub certificate: Certificate,
+}
+
 /// Points in order, and how far that order may be trusted. Serialises to the JSON object of `reorder order`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ordering {
@@ -117,22 +158,27 @@ pub struct Ordering {
     pub n: usize,
     /// Every input row once, in recovered order. Equal points stand together, by row.
     pub order: Vec<usize>,
-    /// Whether the last point is followed by the first.
+    /// Whether the last point is followed by the first. Several curves in a row are open.
     pub topology: Topology,
     /// How the order was found.
     pub method: Method,
-    /// How far it may be trusted.
+    /// How far it may be trusted: of several curves the least.
     pub verdict: Verdict,
     /// Whether the order is the same when a radian counts for half and for twice as many metres; `None` where no such weight
     /// exists or was tried.
     pub weight_stable: Option<bool>,
     /// Metres that one radian counted for; `None` on manifolds without that weight.
     pub metres_per_radian: Option<f64>,
-    /// The rows of each connected curve, in order. Always one curve for now.
+    /// The rows of each curve that the points look like, in order. [`ComponentsChoice`] says whether each was ordered by itself, or all
+    /// as one.
     pub components: Vec<Vec<usize>>,
+    /// What is known about each of `components`, where they were ordered apart; otherwise empty.
+    pub parts: Vec<Part>,
+    /// Rows that stand apart from every curve, ascending. They come last in the order where curves were ordered apart.
+    pub outliers: Vec<usize>,
     /// Groups of two or more rows with equal points (a dwell), each ascending.
     pub duplicates: Vec<Vec<usize>>,
-    /// Sampling figures.
+    /// Sampling figures: of several curves those of the one that is trusted least.
     pub certificate: Certificate,
     /// What was repaired; `None` where nothing was.
     pub repaired: Option<Repaired>,
@@ -146,15 +192,28 @@ impl Ordering {
     /// The order with equal points that stand together merged into the first of them: what a curve can be drawn through. A point
     /// that a repaired order passes twice is there twice.
     pub fn distinct(&self) -> Vec<usize> {
-        let mut name: Vec<usize> = (0..self.n).collect();
-        for group in &self.duplicates {
-            group.iter().for_each(|&row| name[row] = group[0]);
-        }
+        let name = self.names();
         let mut rows = self.order.clone();
         rows.dedup_by_key(|row| name[*row]);
         while self.topology == Topology::Closed && rows.len() > 1 && name[rows[0]] == name[rows[rows.len() - 1]] {
             rows.pop();
         }
         rows
+    }
+
+    /// Puts the rows of each component in the order of all.
+    pub(crate) fn sort_components(&mut self) {
+        let mut place = vec![0; self.n];
+        self.order.iter().enumerate().for_each(|(k, &row)| place[row] = k);
+        self.components.iter_mut().for_each(|rows| rows.sort_by_key(|&row| place[row]));
+    }
+
+    /// For every row the first row of those that hold the same point.
+    pub(crate) fn names(&self) -> Vec<usize> {
+        let mut name: Vec<usize> = (0..self.n).collect();
+        for group in &self.duplicates {
+            group.iter().for_each(|&row| name[row] = group[0]);
+        }
+        name
     }
 }

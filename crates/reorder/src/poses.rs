@@ -4,7 +4,7 @@ use se3_geom::{Pose, Se3};
 
 use crate::agreement::Variant;
 use crate::error::{OrderError, check_points};
-use crate::order::order_among;
+use crate::finish::ordered;
 use crate::ordering::{Options, Ordering};
 use crate::weight::{Weight, Weighted, automatic_weight};
 
@@ -44,7 +44,7 @@ pub fn order_weighted<M: Weighted>(
         Variant { manifold: metric_at(0.5)?, change: "with half as many metres per radian" },
         Variant { manifold: metric_at(2.0)?, change: "with twice as many metres per radian" },
     ];
-    let mut ordering = order_among(&metric, &variants, points, options)?;
+    let mut ordering = ordered(&metric, &variants, points, options)?;
     ordering.metres_per_radian = Some(length);
     Ok(ordering)
 }

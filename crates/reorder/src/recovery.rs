@@ -3,6 +3,7 @@
 use petgraph::graph::NodeIndex;
 use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
+use tracing::debug_span;
 
 use crate::certificate::closes;
 use crate::curve::Curve;
@@ -61,6 +62,14 @@ impl Recovery {
         }
         names
     }
+    /// Which rows stand for several equal points.
+    pub(crate) fn repeated(&self, count: usize) -> Vec<bool> {
+        let mut repeated = vec![false; count];
+        for group in &self.distinct.groups {
+            repeated[group[0]] = group.len() > 1;
+        }
+        repeated
+    }
     /// The edges of the tree as (smaller row, greater row), ascending.
     pub(crate) fn tree_edges(&self) -> Vec<(usize, usize)> {
         let tree = &self.distinct.tree;
@@ -85,7 +94,8 @@ impl Recovery {
     }
 }
 
-fn distinct_points<M: Manifold>(
+/// Equal points merged, with the minimum spanning tree of the distinct ones.
+pub(crate) fn distinct_points<M: Manifold>(
     manifold: &M,
     points: &[M::Point],
     topology: TopologyChoice,
@@ -99,6 +109,7 @@ fn distinct_points<M: Manifold>(
     if let Some(start) = start.filter(|&start| start >= count) {
         return Err(OrderError::StartOutOfRange { start, count });
     }
+    let _phase = debug_span!("spanning tree").entered();
     let merged = merge(manifold, points, minimum_spanning_tree(manifold, points)?);
     match merged.groups.len() {
         1 => Err(OrderError::AllEqual { count }),
@@ -107,6 +118,6 @@ fn distinct_points<M: Manifold>(
     }
 }
 
-fn rows_along(tree: &Tree, root: NodeIndex) -> Vec<usize> {
+pub(crate) fn rows_along(tree: &Tree, root: NodeIndex) -> Vec<usize> {
     walk(tree, root).into_iter().map(|node| tree[node]).collect()
 }

@@ -1,11 +1,12 @@
 //! Orders where the minimum spanning tree is no path, or a path that something speaks against.
 
 use se3_geom::Manifold;
+use tracing::debug_span;
 
 use crate::curve::Curve;
 use crate::ordering::TopologyChoice;
 use crate::topology::{Closing, closing};
-use crate::tour::{Effort, Problem, closed_tour, greedy, open_path};
+use crate::tour::{Effort, Problem, closed_tour, open_path, starts};
 
 /// What a unit of turning costs in units of length where the order is taken from.
 pub(crate) const TURNING: f64 = 3.0;
@@ -31,7 +32,8 @@ pub(crate) fn sequence<M: Manifold>(
     preferred: &[(usize, usize)],
     topology: TopologyChoice,
 ) -> Sequence {
-    let open = open_path(problem, turning, greedy(problem, preferred), Effort::Kicks);
+    let _phase = debug_span!("search").entered();
+    let open = open_path(problem, turning, starts(problem, turning, preferred), Effort::Kicks);
     if topology == TopologyChoice::Open {
         return Sequence { rows: open, closed: false, unsure_of_ends: false };
     }

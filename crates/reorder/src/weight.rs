@@ -8,7 +8,7 @@ use crate::error::{OrderError, check_points};
 use crate::order::MOST_REPAIRED_UNASKED;
 use crate::repair::TURNING;
 use crate::spanning_tree::{Tree, minimum_spanning_tree};
-use crate::tour::{Effort, Problem, greedy, open_path};
+use crate::tour::{Effort, Problem, starts, open_path};
 
 /// A space of rotations and translations whose metric weighs one against the other.
 pub trait Weighted: Manifold + Sized {
@@ -123,7 +123,7 @@ fn turns_of<M: Manifold>(metric: &M, points: &[M::Point], tree: &Tree) -> Vec<[u
     if points.len() <= MOST_REPAIRED_UNASKED {
         let edges: Vec<_> = tree.edge_references().map(|e| (e.source().index(), e.target().index())).collect();
         let problem = Problem::new(metric, points);
-        let rows = open_path(&problem, TURNING, greedy(&problem, &edges), Effort::Descent);
+        let rows = open_path(&problem, TURNING, starts(&problem, TURNING, &edges), Effort::Descent);
         return rows.windows(3).map(|w| [w[0], w[1], w[2]]).collect();
     }
     let turn = |node: NodeIndex| match tree.neighbors(node).collect::<Vec<_>>()[..] {

@@ -63,7 +63,7 @@ fn json_has_the_fixed_shape() {
         serde_json::json!({
             "n": 8, "order": [7, 6, 5, 4, 3, 2, 1, 0], "topology": "open", "method": "mst", "verdict": "plausible", "weight_stable": true,
             "metres_per_radian": 0.5, "components": [[7, 6, 5, 4, 3, 2, 1, 0]], "duplicates": [],
-            "repaired": null, "moved": [], "doubts": []
+            "repaired": null, "parts": [], "outliers": [], "moved": [], "doubts": []
         })
     );
     let mut keys: Vec<_> = certificate.as_object().unwrap().keys().cloned().collect();
@@ -76,6 +76,7 @@ fn json_has_the_fixed_shape() {
         "injectivity_radius",
         "margin",
         "max_gap",
+        "noise",
         "opening",
         "reach",
         "required_reach",

@@ -30,6 +30,7 @@ const UNREPAIRED: Options = Options {
     method: reorder::MethodChoice::Auto,
     repair: Repair::Off,
     denoise: false,
+    components: reorder::ComponentsChoice::One,
 };
 
 /// A function drawn at random.

@@ -15,7 +15,7 @@ use se3_geom::Manifold;
 
 pub(crate) use problem::Problem;
 use search::Search;
-pub(crate) use start::greedy;
+pub(crate) use start::starts;
 
 /// How long to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,15 +35,20 @@ impl Effort {
     }
 }
 
-/// An open path through all points, from the path `start`.
+/// An open path through all points, from the one of two paths that leads to the cheaper one at once.
 pub(crate) fn open_path<M: Manifold>(
     problem: &Problem<M>,
     turning: f64,
-    mut start: Vec<usize>,
+    starts: [Vec<usize>; 2],
     effort: Effort,
 ) -> Vec<usize> {
-    start.push(problem.opening());
-    let mut nodes = Search::new(problem, turning, start).run(effort.kicks_per_node());
+    let [short, smooth] = starts.map(|mut start| {
+        start.push(problem.opening());
+        let nodes = Search::new(problem, turning, start).run(0);
+        Search::new(problem, turning, nodes)
+    });
+    let cheaper = if smooth.cost() < short.cost() { smooth } else { short };
+    let mut nodes = cheaper.run(effort.kicks_per_node());
     let opening = nodes.iter().position(|&v| v == problem.opening()).unwrap_or(0);
     nodes.rotate_left(opening);
     nodes.remove(0);

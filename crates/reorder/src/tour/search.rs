@@ -57,6 +57,12 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         search
     }
 
+    /// Σ distance + λ Σ turning of the whole tour.
+    pub(super) fn cost(&self) -> f64 {
+        let edge = |k: usize| self.problem.distance(self.ring.node(k), self.ring.node(k + 1));
+        (0..self.ring.len()).map(edge).sum::<f64>() + self.turns.iter().sum::<f64>()
+    }
+
     /// Improves from every node, then after so many kicks for every node whose neighbours are not the obvious ones.
     pub(super) fn run(mut self, kicks_per_node: usize) -> Vec<usize> {
         // In a circle of four or fewer there is nothing to exchange that an exchange of two edges would not reach.

@@ -5,30 +5,48 @@ use se3_geom::Manifold;
 
 use super::problem::Problem;
 
-/// Edges joined to one path through all points: those of `preferred` first, then the shortest to near points, then the shortest
+/// Two paths through all points to search from: of the shortest edges, and of the edges that go on well.
+///
+/// Where a curve runs beside itself, the shortest edges lead across, and from a path that zigzags no single exchange leads back. The
+/// edges that cost least with what goes on best at either end lead along. Where it crosses itself, short edges are the better guess.
+pub(crate) fn starts<M: Manifold>(
+    problem: &Problem<M>,
+    turning: f64,
+    preferred: &[(usize, usize)],
+) -> [Vec<usize>; 2] {
+    let goes_on = |v: usize, w: usize| {
+        let beyond = problem.near(w).iter().filter(|near| near.node != v);
+        beyond.map(|near| near.distance + turning * problem.turn(v, w, near.node)).fold(f64::INFINITY, f64::min)
+    };
+    let distance = |v: usize, w: usize| problem.distance(v, w);
+    [
+        greedy(problem, distance, preferred),
+        greedy(problem, |v, w| distance(v, w) + 0.5 * (goes_on(v, w) + goes_on(w, v)), preferred),
+    ]
+}
+
+/// Edges joined to one path through all points: those of `preferred` first, then the cheapest to near points, then the shortest
 /// between the ends of what is there; never a third edge at a point, and never a loop.
-pub(crate) fn greedy<M: Manifold>(problem: &Problem<M>, preferred: &[(usize, usize)]) -> Vec<usize> {
+fn greedy<M: Manifold>(
+    problem: &Problem<M>,
+    cost: impl Fn(usize, usize) -> f64,
+    preferred: &[(usize, usize)],
+) -> Vec<usize> {
     let n = problem.len();
-    let by_length = |pairs: &mut Vec<(usize, usize)>| {
-        let mut edges: Vec<_> = pairs.drain(..).map(|(a, b)| (problem.distance(a, b), a.min(b), a.max(b))).collect();
+    let mut paths = Paths::new(n);
+    let mut join = |pairs: Vec<(usize, usize)>, cost: &dyn Fn(usize, usize) -> f64| {
+        let mut edges: Vec<_> =
+            pairs.into_iter().map(|(a, b)| (a.min(b), a.max(b))).map(|(a, b)| (cost(a, b), a, b)).collect();
         edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         edges.dedup();
-        edges
+        edges.into_iter().for_each(|(_, a, b)| paths.join(a, b));
+        (0..n).filter(|&v| paths.beside[v].len() < 2).collect::<Vec<usize>>()
     };
-    let mut paths = Paths::new(n);
-    for (_, a, b) in by_length(&mut preferred.to_vec()) {
-        paths.join(a, b);
-    }
-    let mut near: Vec<_> = (0..n).flat_map(|v| problem.near(v).iter().map(move |near| (v, near.node))).collect();
-    for (_, a, b) in by_length(&mut near) {
-        paths.join(a, b);
-    }
-    let ends: Vec<usize> = (0..n).filter(|&v| paths.beside[v].len() < 2).collect();
-    let mut pairs: Vec<_> =
-        ends.iter().enumerate().flat_map(|(k, &a)| ends[k + 1..].iter().map(move |&b| (a, b))).collect();
-    for (_, a, b) in by_length(&mut pairs) {
-        paths.join(a, b);
-    }
+    let distance = |a: usize, b: usize| problem.distance(a, b);
+    join(preferred.to_vec(), &distance);
+    let near = (0..n).flat_map(|v| problem.near(v).iter().map(move |near| (v, near.node))).collect();
+    let ends = join(near, &cost);
+    join(ends.iter().enumerate().flat_map(|(k, &a)| ends[k + 1..].iter().map(move |&b| (a, b))).collect(), &distance);
     paths.walk()
 }
 

@@ -10,7 +10,7 @@ use permutations::permutations;
 
 use super::random::Random;
 use super::search::Search;
-use super::{Effort, Problem, closed_tour, greedy, open_path};
+use super::{Effort, Problem, closed_tour, starts, open_path};
 
 const PLANE: R2 = se3_geom::Euclidean::<2>;
 
@@ -80,11 +80,11 @@ fn the_search_finds_the_best_of_all_permutations() {
                 cost(&problem, turning, &ring)
             };
             let best = permutations(n).iter().map(|rows| whole(rows)).fold(f64::INFINITY, f64::min);
-            let start = greedy(&problem, &[]);
+            let [short, smooth] = starts(&problem, turning, &[]);
             let found = if closed {
-                closed_tour(&problem, turning, start, Effort::Kicks)
+                closed_tour(&problem, turning, short, Effort::Kicks)
             } else {
-                open_path(&problem, turning, start, Effort::Kicks)
+                open_path(&problem, turning, [short, smooth], Effort::Kicks)
             };
             let mut rows = found.clone();
             rows.sort_unstable();
