@@ -35,7 +35,7 @@ impl Effort {
     }
 }
 
-/// An open path through all points, from the one of two paths that leads to the cheaper one at once.
+/// An open path through all points: the cheaper of those found from two paths.
 pub(crate) fn open_path<M: Manifold>(
     problem: &Problem<M>,
     turning: f64,
@@ -44,11 +44,10 @@ pub(crate) fn open_path<M: Manifold>(
 ) -> Vec<usize> {
     let [short, smooth] = starts.map(|mut start| {
         start.push(problem.opening());
-        let nodes = Search::new(problem, turning, start).run(0);
+        let nodes = Search::new(problem, turning, start).run(effort.kicks_per_node());
         Search::new(problem, turning, nodes)
     });
-    let cheaper = if smooth.cost() < short.cost() { smooth } else { short };
-    let mut nodes = cheaper.run(effort.kicks_per_node());
+    let mut nodes = if smooth.cost() < short.cost() { smooth } else { short }.into_nodes();
     let opening = nodes.iter().position(|&v| v == problem.opening()).unwrap_or(0);
     nodes.rotate_left(opening);
     nodes.remove(0);

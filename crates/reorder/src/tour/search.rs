@@ -63,6 +63,10 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         (0..self.ring.len()).map(edge).sum::<f64>() + self.turns.iter().sum::<f64>()
     }
 
+    pub(super) fn into_nodes(self) -> Vec<usize> {
+        self.ring.into_nodes()
+    }
+
     /// Improves from every node, then after so many kicks for every node whose neighbours are not the obvious ones.
     pub(super) fn run(mut self, kicks_per_node: usize) -> Vec<usize> {
         // In a circle of four or fewer there is nothing to exchange that an exchange of two edges would not reach.
