@@ -8,7 +8,7 @@ use crate::error::{OrderError, check_points};
 use crate::order::MOST_REPAIRED_UNASKED;
 use crate::repair::TURNING;
 use crate::spanning_tree::{Tree, minimum_spanning_tree};
-use crate::tour::{Effort, Problem, starts, open_path};
+use crate::tour::{Effort, Problem, open_path, starts};
 
 /// A space of rotations and translations whose metric weighs one against the other.
 pub trait Weighted: Manifold + Sized {

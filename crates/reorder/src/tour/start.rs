@@ -9,11 +9,7 @@ use super::problem::Problem;
 ///
 /// Where a curve runs beside itself, the shortest edges lead across, and from a path that zigzags no single exchange leads back. The
 /// edges that cost least with what goes on best at either end lead along. Where it crosses itself, short edges are the better guess.
-pub(crate) fn starts<M: Manifold>(
-    problem: &Problem<M>,
-    turning: f64,
-    preferred: &[(usize, usize)],
-) -> [Vec<usize>; 2] {
+pub(crate) fn starts<M: Manifold>(problem: &Problem<M>, turning: f64, preferred: &[(usize, usize)]) -> [Vec<usize>; 2] {
     let goes_on = |v: usize, w: usize| {
         let beyond = problem.near(w).iter().filter(|near| near.node != v);
         beyond.map(|near| near.distance + turning * problem.turn(v, w, near.node)).fold(f64::INFINITY, f64::min)

@@ -10,7 +10,7 @@ use permutations::permutations;
 
 use super::random::Random;
 use super::search::Search;
-use super::{Effort, Problem, closed_tour, starts, open_path};
+use super::{Effort, Problem, closed_tour, open_path, starts};
 
 const PLANE: R2 = se3_geom::Euclidean::<2>;
 
