@@ -4,8 +4,8 @@
 //! JointTrajectory ─► SimulatedArm::execute ─► Execution { tracking, contacts, torques, tool path } ─► pose_errors
 //! ```
 //!
-//! Joints are in rad (m for slides), times in s. Poses are `world_from_tool`: for the UR5e model the world is the arm's `base_link`
-//! and the tool site its `tool0`, so that they agree with the planner's `base_from_tool`.
+//! Joints are in rad (m for slides), times in s. Poses are `world_from_tool`: in the models of the shipped robots the
+//! world is the arm's base frame and the tool site its tool frame, so that they agree with the planner's `base_from_tool`.
 //!
 //! ```no_run
 //! use mujoco_sim::{ExecuteOptions, SimulatedArm, TOOL_SITE, model_file, read_trajectory};
@@ -33,5 +33,5 @@ pub use model::model_file;
 pub use planner;
 pub use trajectory_file::read_trajectory;
 
-/// The site that marks the flange in the models of MuJoCo Menagerie.
+/// The site that marks the tool in the models of the set-up, and in many of MuJoCo Menagerie.
 pub const TOOL_SITE: &str = "attachment_site";
