@@ -4,8 +4,8 @@
 mod support;
 
 use manipulator::nalgebra::{DVector, Matrix6xX, UnitQuaternion, Vector3};
-use manipulator::{Chain, Robot};
-use se3_geom::{LieGroup, Manifold, Pose, Se3, Se3Group, So3, pose_from_xyzw};
+use manipulator::{Chain, ManipulatorError, Robot};
+use se3_geom::{LieGroup, Manifold, Pose, Se3, Se3Group, So3, Twist, pose_from_xyzw};
 use support::{Random, random_configuration, ur5e};
 
 /// MuJoCo's own range ends at 6.28319 and its figures have twelve decimals; the quarter turns of its quaternions are exact.
@@ -171,6 +171,33 @@ fn prismatic_continuous_and_fixed_joints_compose() {
     let expected = pose_from_xyzw([0.3 + 0.2 - 0.5, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]).unwrap();
     assert!(Se3::default().distance(&pose, &expected) < 1e-15);
     assert_eq!((robot.limits.lower[0], robot.limits.upper[0], robot.limits.upper[1]), (-1.0, 0.75, f64::INFINITY));
+}
+
+/// The chain of `MIXED` written by hand: the slide along x, the spin about z through (0.2, 0, 1), the hand 0.5 m along y.
+#[test]
+fn a_chain_of_space_screws_is_that_of_the_urdf() {
+    let joints = |axis: Vector3<f64>| {
+        let through = Vector3::new(0.2, 0.0, 1.0);
+        let slide = ("slide".to_owned(), Twist::new(Vector3::x(), Vector3::zeros()));
+        vec![slide, ("spin".to_owned(), Twist::new(through.cross(&axis), axis))]
+    };
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let hand = pose_from_xyzw([0.2, 0.5, 1.0], [0.0, 0.0, half, half]).unwrap();
+    let chain = Chain::from_space_screws(joints(Vector3::z()), hand).unwrap();
+    let robot = Robot::from_urdf(&mixed("revolute", ""), MIXED_SETTINGS).unwrap();
+    for q in [[0.0, 0.0], [0.3, 1.1], [-0.8, -2.5]].map(|q| DVector::from_column_slice(&q)) {
+        // Lengths of about a metre and a few products: a few roundings.
+        assert!(Se3::default().distance(&chain.forward(&q), &robot.chain.forward(&q)) < 1e-14);
+        assert!((chain.body_jacobian(&q) - robot.chain.body_jacobian(&q)).amax() < 1e-14);
+    }
+    let refusal = |joints, pose| Chain::from_space_screws(joints, pose).unwrap_err();
+    assert_eq!(refusal(vec![], hand), ManipulatorError::NoJoints);
+    for wrong in [Vector3::z() * 1.001, Vector3::zeros(), Vector3::z() * f64::NAN] {
+        let message = refusal(joints(wrong), hand).to_string();
+        assert!(message.contains("spin") && message.contains("axis"), "{message}");
+    }
+    let nowhere = Pose::translation(f64::NAN, 0.0, 0.0);
+    assert!(matches!(refusal(joints(Vector3::z()), nowhere), ManipulatorError::NonFinite { .. }));
 }
 
 #[test]

@@ -17,6 +17,7 @@
 //! ```
 
 mod arm;
+mod chain;
 mod command;
 mod contact;
 mod error;
@@ -26,6 +27,7 @@ mod servo;
 mod trajectory_file;
 
 pub use arm::{ExecuteOptions, SimulatedArm};
+pub use chain::read_chain;
 pub use contact::{ContactEvent, Touch};
 pub use error::SimError;
 pub use execution::{Execution, JointTracking, PoseErrors, Sample};

@@ -51,3 +51,10 @@ pub(crate) fn load(path: &Path) -> Result<MjModel> {
     };
     MjModel::from_xml(path).map_err(refused)
 }
+
+/// Index of the site of that name.
+pub(crate) fn site(model: &MjModel, file: &str, name: &str) -> Result<usize> {
+    (0..model.ffi().nsite as usize)
+        .find(|&site| model.id_to_name(MjtObjBase::mjOBJ_SITE, site) == Some(name))
+        .ok_or_else(|| SimError::MissingSite { file: file.into(), site: name.into() })
+}
