@@ -3,6 +3,8 @@
 use nalgebra::{DVector, Matrix6xX, Vector6};
 use se3_geom::{LieGroup, Pose, Se3Group, Twist};
 
+use crate::error::{ManipulatorError, Result};
+
 /// A serial chain of single-axis joints, T(q) = M·exp(B₁q₁)⋯exp(Bₙqₙ).
 ///
 /// M is `base_from_tool` with all joints at zero and Bᵢ the screw axis of joint i in the tool frame at zero, (v, ω) in m and rad per
@@ -20,6 +22,36 @@ impl Chain {
         let rotary = joints.iter().map(|(_, screw)| screw.angular != nalgebra::Vector3::zeros()).collect();
         let (joint_names, screws) = joints.into_iter().unzip();
         Self { joint_names, screws, home, rotary }
+    }
+
+    /// A chain of named joints, base to tool, from their screw axes Sᵢ in the base frame, (v, ω) in m and rad per unit of qᵢ, and
+    /// `base_from_tool` M, both with all joints at zero: Bᵢ = Ad(M⁻¹)·Sᵢ (Lynch & Park, *Modern Robotics*, §4.1.3).
+    ///
+    /// A turning joint about the unit vector u through the point a has Sᵢ = (a × u, u), a sliding one (u, 0).
+    ///
+    /// # Errors
+    /// [`ManipulatorError::NoJoints`], [`ManipulatorError::InvalidJoint`] for an axis that has not unit length (to 1e-9, what
+    /// is read from a file is rounded), [`ManipulatorError::NonFinite`].
+    pub fn from_space_screws(joints: Vec<(String, Twist)>, base_from_tool: Pose) -> Result<Self> {
+        if joints.is_empty() {
+            return Err(ManipulatorError::NoJoints);
+        }
+        if !se3_geom::Manifold::is_finite(&se3_geom::Se3::default(), &base_from_tool) {
+            return Err(ManipulatorError::NonFinite { what: "the tool's pose in the base frame" });
+        }
+        let mut body_screws = Vec::with_capacity(joints.len());
+        for (name, Twist { linear, angular }) in joints {
+            let slides = angular == nalgebra::Vector3::zeros();
+            let length = if slides { linear.norm() } else { angular.norm() };
+            if !((length - 1.0).abs() < 1e-9 && linear.norm().is_finite()) {
+                let what = "the length of its axis";
+                return Err(ManipulatorError::InvalidJoint { joint: name, what, value: length, must_be: "1" });
+            }
+            let at_tool = linear + angular.cross(&base_from_tool.translation.vector);
+            let tool_from_base = base_from_tool.rotation.inverse();
+            body_screws.push((name, Twist::new(tool_from_base * at_tool, tool_from_base * angular)));
+        }
+        Ok(Self::new(body_screws, base_from_tool))
     }
 
     /// Names of the moving joints, base to tool.

@@ -37,6 +37,9 @@ pub enum ManipulatorError {
         /// Tool frame.
         tool: String,
     },
+    /// A chain of no joints.
+    #[error("nothing moves the tool: a chain needs at least one joint")]
+    NoJoints,
     /// A joint on the chain is of a kind that a serial chain of single axes cannot have.
     #[error("joint {joint:?} is {kind}: only revolute, continuous, prismatic and fixed joints are supported")]
     UnsupportedJoint {

@@ -7,6 +7,9 @@
 //! Poses are `base_from_tool`, twists are of the tool in the tool frame, ordered (linear, angular); joints are in rad (m for prismatic
 //! joints), times in s.
 //!
+//! Chains may have any number of joints. With fewer than six no pose can be followed ([`ManipulatorError::Singular`]); with more, the
+//! joints take the least motion from each pose to the next, which uses none of the freedom that is left to avoid limits.
+//!
 //! ```
 //! use manipulator::{follow, time_path, PathOptions, Robot, TimingOptions};
 //! use se3_geom::{centripetal_knots, nalgebra::Vector3, Ends, PoseSpline, Se3};

@@ -9,8 +9,12 @@ use crate::chain::Chain;
 use crate::error::{ManipulatorError, Result};
 use crate::urdf::{self, UrdfLimits};
 
-const UR5E: (&str, &str, &str) =
-    ("ur5e", include_str!("../../../config/robots/ur5e.urdf"), include_str!("../../../config/robots/ur5e.yaml"));
+/// Name, URDF and settings.
+const SHIPPED: [(&str, &str, &str); 3] = [
+    ("ur5e", include_str!("../../../config/robots/ur5e.urdf"), include_str!("../../../config/robots/ur5e.yaml")),
+    ("vx300s", include_str!("../../../config/robots/vx300s.urdf"), include_str!("../../../config/robots/vx300s.yaml")),
+    ("panda", include_str!("../../../config/robots/panda.urdf"), include_str!("../../../config/robots/panda.yaml")),
+];
 
 /// Limits of every joint, each of shape (dof), in SI units (rad, or m for prismatic joints).
 ///
@@ -27,6 +31,8 @@ pub struct Limits {
     pub acceleration: DVector<f64>,
     /// Greatest jerk, per s³.
     pub jerk: DVector<f64>,
+    /// Greatest torque in N·m (force in N for prismatic joints), in both directions; infinite where neither URDF nor settings state one.
+    pub effort: DVector<f64>,
 }
 
 impl Limits {
@@ -71,6 +77,8 @@ struct JointSettings {
     jerk_rad_s3: f64,
     #[serde(default, alias = "velocity_m_s")]
     velocity_rad_s: Option<f64>,
+    #[serde(default, alias = "effort_n")]
+    effort_n_m: Option<f64>,
     #[serde(default, alias = "lower_m")]
     lower_rad: Option<f64>,
     #[serde(default, alias = "upper_m")]
@@ -80,13 +88,24 @@ struct JointSettings {
 }
 
 impl Robot {
-    /// A robot whose description is part of this crate: `"ur5e"`.
+    /// A robot whose description is part of this crate, one of [`Robot::shipped_names`].
+    ///
+    /// ```
+    /// let panda = manipulator::Robot::shipped("panda")?;
+    /// assert_eq!((panda.chain.dof(), panda.limits.effort[6]), (7, 12.0));
+    /// # Ok::<(), manipulator::ManipulatorError>(())
+    /// ```
     ///
     /// # Errors
     /// [`ManipulatorError::UnknownRobot`] for any other name.
     pub fn shipped(name: &str) -> Result<Self> {
         let (urdf, settings) = shipped_description(name)?;
         Self::from_urdf(urdf, settings)
+    }
+
+    /// The robots whose descriptions are part of this crate: `ur5e`, `vx300s` (ViperX 300 6DOF) and `panda` (Franka Panda, seven joints).
+    pub fn shipped_names() -> impl Iterator<Item = &'static str> {
+        SHIPPED.iter().map(|(name, ..)| *name)
     }
 
     /// A robot whose description is part of this crate, with other settings than the shipped ones.
@@ -100,8 +119,8 @@ impl Robot {
     /// A robot from a URDF and the YAML settings beside it.
     ///
     /// The settings have `base_frame`, `tool_frame` and, under `joints`, for every moving joint between them
-    /// `acceleration_rad_s2`, `jerk_rad_s3` and optionally `lower_rad`, `upper_rad`, `velocity_rad_s` (which only tighten the
-    /// URDF's) and `preferred_rad` (else the middle of the range).
+    /// `acceleration_rad_s2`, `jerk_rad_s3` and optionally `lower_rad`, `upper_rad`, `velocity_rad_s`, `effort_n_m`
+    /// (which only tighten the URDF's) and `preferred_rad` (else the middle of the range).
     ///
     /// # Errors
     /// A [`ManipulatorError`] that names the frame, joint or key that is wrong.
@@ -126,8 +145,9 @@ impl Robot {
             velocity: column(2),
             acceleration: column(3),
             jerk: column(4),
+            effort: column(5),
         };
-        let preferred = column(5);
+        let preferred = column(6);
         let Settings { base_frame, tool_frame, .. } = settings;
         Ok(Self { name: description.name, chain, limits, preferred, base_frame, tool_frame })
     }
@@ -161,15 +181,16 @@ impl Robot {
 
 /// URDF and settings.
 fn shipped_description(name: &str) -> Result<(&'static str, &'static str)> {
-    let (known, urdf, settings) = UR5E;
-    if name == known {
-        return Ok((urdf, settings));
-    }
-    Err(ManipulatorError::UnknownRobot { name: name.into(), known: known.into() })
+    let found = SHIPPED.iter().find(|(known, ..)| *known == name);
+    let unknown = || ManipulatorError::UnknownRobot {
+        name: name.into(),
+        known: Robot::shipped_names().collect::<Vec<_>>().join(", "),
+    };
+    found.map(|(_, urdf, settings)| (*urdf, *settings)).ok_or_else(unknown)
 }
 
-/// Lower, upper, velocity, acceleration, jerk, preferred.
-fn combine(name: &str, stated: &UrdfLimits, own: &JointSettings) -> Result<[f64; 6]> {
+/// Lower, upper, velocity, acceleration, jerk, effort, preferred.
+fn combine(name: &str, stated: &UrdfLimits, own: &JointSettings) -> Result<[f64; 7]> {
     let invalid = |what, value, must_be| ManipulatorError::InvalidJoint { joint: name.into(), what, value, must_be };
     let figures = [own.velocity_rad_s, own.lower_rad, own.upper_rad, own.preferred_rad];
     if let Some(value) = figures.into_iter().flatten().find(|v| !v.is_finite()) {
@@ -179,6 +200,7 @@ fn combine(name: &str, stated: &UrdfLimits, own: &JointSettings) -> Result<[f64;
         ("its acceleration limit", own.acceleration_rad_s2),
         ("its jerk limit", own.jerk_rad_s3),
         ("its velocity limit", own.velocity_rad_s.unwrap_or(stated.velocity)),
+        ("its effort limit", own.effort_n_m.unwrap_or(1.0)),
     ];
     for (what, value) in positive {
         if !(value.is_finite() && value > 0.0) {
@@ -196,5 +218,6 @@ fn combine(name: &str, stated: &UrdfLimits, own: &JointSettings) -> Result<[f64;
         return Err(invalid("its preferred position", preferred, "within its limits"));
     }
     let velocity = stated.velocity.min(own.velocity_rad_s.unwrap_or(f64::INFINITY));
-    Ok([lower, upper, velocity, own.acceleration_rad_s2, own.jerk_rad_s3, preferred])
+    let effort = stated.effort.min(own.effort_n_m.unwrap_or(f64::INFINITY));
+    Ok([lower, upper, velocity, own.acceleration_rad_s2, own.jerk_rad_s3, effort, preferred])
 }

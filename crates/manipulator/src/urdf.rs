@@ -9,11 +9,13 @@ use urdf_rs::{Joint, JointType};
 use crate::chain::Chain;
 use crate::error::{ManipulatorError, Result};
 
-/// Position and velocity limits of one joint as the URDF has them.
+/// Limits of one joint as the URDF has them.
 pub(crate) struct UrdfLimits {
     pub(crate) lower: f64,
     pub(crate) upper: f64,
     pub(crate) velocity: f64,
+    /// Infinite where none is stated.
+    pub(crate) effort: f64,
 }
 
 pub(crate) fn parse(urdf: &str) -> Result<urdf_rs::Robot> {
@@ -110,14 +112,20 @@ fn stated_limits(joint: &Joint) -> Result<UrdfLimits> {
     if !(limit.velocity.is_finite() && limit.velocity > 0.0) {
         return Err(invalid(joint, "its velocity limit", limit.velocity, "stated and positive"));
     }
+    if !(limit.effort.is_finite() && limit.effort >= 0.0) {
+        return Err(invalid(joint, "its effort limit", limit.effort, "positive, or 0 where it is not known"));
+    }
+    // The parser reads an absent effort as 0, and URDFs without dynamics say 0 too.
+    let effort = if limit.effort > 0.0 { limit.effort } else { f64::INFINITY };
+    let velocity = limit.velocity;
     if joint.joint_type == JointType::Continuous {
-        return Ok(UrdfLimits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: limit.velocity });
+        return Ok(UrdfLimits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity, effort });
     }
     let range = limit.upper - limit.lower;
     if !(range.is_finite() && range > 0.0) {
         return Err(invalid(joint, "its range (upper - lower limit)", range, "stated and positive"));
     }
-    Ok(UrdfLimits { lower: limit.lower, upper: limit.upper, velocity: limit.velocity })
+    Ok(UrdfLimits { lower: limit.lower, upper: limit.upper, velocity, effort })
 }
 
 fn invalid(joint: &Joint, what: &'static str, value: f64, must_be: &'static str) -> ManipulatorError {

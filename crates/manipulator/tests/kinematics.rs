@@ -1,11 +1,11 @@
-//! Kinematics of the shipped UR5e against MuJoCo's model of it, and of any chain against its definition.
+//! Kinematics of the shipped arms against MuJoCo's model and published figures, and of any chain against its definition.
 #![allow(clippy::unwrap_used)]
 
 mod support;
 
-use manipulator::nalgebra::{DVector, Matrix6xX};
-use manipulator::{Chain, Robot};
-use se3_geom::{LieGroup, Manifold, Pose, Se3, Se3Group, So3, pose_from_xyzw};
+use manipulator::nalgebra::{DVector, Matrix6xX, UnitQuaternion, Vector3};
+use manipulator::{Chain, ManipulatorError, Robot};
+use se3_geom::{LieGroup, Manifold, Pose, Se3, Se3Group, So3, Twist, pose_from_xyzw};
 use support::{Random, random_configuration, ur5e};
 
 /// MuJoCo's own range ends at 6.28319 and its figures have twelve decimals; the quarter turns of its quaternions are exact.
@@ -44,13 +44,18 @@ fn difference_quotient(chain: &Chain, q: &DVector<f64>, h: f64) -> Matrix6xX<f64
 /// direction, where the error is that of central differences, O(h²): halving the step must quarter it.
 #[test]
 fn jacobian_is_the_slope_of_forward_kinematics() {
-    let robot = ur5e();
+    for name in Robot::shipped_names() {
+        assert_jacobian_is_the_slope(&Robot::shipped(name).unwrap());
+    }
+}
+
+fn assert_jacobian_is_the_slope(robot: &Robot) {
     let mut random = Random(11);
     for _ in 0..20 {
-        let q = random_configuration(&robot, 3.0, &mut random);
+        let q = random_configuration(robot, 3.0, &mut random);
         let jacobian = robot.chain.body_jacobian(&q);
         assert!((difference_quotient(&robot.chain, &q, 1e-4) - &jacobian).amax() < 1e-10);
-        let direction = random_configuration(&robot, 1.0, &mut random);
+        let direction = random_configuration(robot, 1.0, &mut random);
         let defect = |h: f64| {
             let (before, after) =
                 (robot.chain.forward(&(&q - &direction * h)), robot.chain.forward(&(&q + &direction * h)));
@@ -74,7 +79,66 @@ fn names_and_limits_are_those_of_the_data_sheet() {
     assert_eq!(robot.limits.velocity.as_slice(), [pi; 6]);
     assert_eq!(robot.limits.acceleration.as_slice(), [5.0; 6]);
     assert_eq!(robot.limits.jerk.as_slice(), [50.0; 6]);
-    assert!(Robot::shipped("ur6e").unwrap_err().to_string().contains("ur6e"));
+    assert_eq!(robot.limits.effort.as_slice(), [150.0, 150.0, 150.0, 28.0, 28.0, 28.0]);
+    let unknown = Robot::shipped("ur6e").unwrap_err().to_string();
+    assert!(Robot::shipped_names().chain(["ur6e"]).all(|name| unknown.contains(name)), "{unknown}");
+}
+
+#[test]
+fn effort_limits_come_from_the_urdf_and_are_tightened_by_the_settings() {
+    let urdf = mixed("revolute", "");
+    let efforts = |urdf: &str, slide: &str| {
+        let settings = MIXED_SETTINGS.replace("upper_m: 0.75", slide);
+        Robot::from_urdf(urdf, &settings).map(|robot| robot.limits.effort[0])
+    };
+    assert_eq!(efforts(&urdf, "effort_n: 0.25").unwrap(), 0.25);
+    assert_eq!(efforts(&urdf, "effort_n: 7.0").unwrap(), 1.0);
+    let unstated = urdf.replace(r#"effort="1" velocity="0.5""#, r#"velocity="0.5""#);
+    assert_eq!(efforts(&unstated, "effort_n: 7.0").unwrap(), 7.0);
+    assert_eq!(efforts(&unstated, "upper_m: 0.75").unwrap(), f64::INFINITY);
+    for (urdf, slide) in [
+        (urdf.replace(r#"effort="1""#, r#"effort="-1""#), "upper_m: 0.75"),
+        (urdf.replace(r#"effort="1""#, r#"effort="nan""#), "upper_m: 0.75"),
+        (urdf.clone(), "effort_n: 0.0"),
+        (urdf.clone(), "effort_n: -2.0"),
+        (urdf.clone(), "effort_n: .nan"),
+    ] {
+        let message = efforts(&urdf, slide).unwrap_err().to_string();
+        assert!(message.contains("slide") && message.contains("effort"), "{message}");
+    }
+}
+
+/// Distance of link i from its predecessor along x, twist about x, offset along z (Craig's convention), as the manufacturer publishes
+/// them in m and quarter turns; the flange is 0.107 m beyond joint 7, the hand an eighth of a turn about z.
+const PANDA_DH: [[f64; 3]; 7] = [
+    [0.0, 0.0, 0.333],
+    [0.0, -1.0, 0.0],
+    [0.0, 1.0, 0.316],
+    [0.0825, 1.0, 0.0],
+    [-0.0825, -1.0, 0.384],
+    [0.0, 1.0, 0.0],
+    [0.088, 1.0, 0.0],
+];
+
+#[test]
+fn the_panda_has_the_published_denavit_hartenberg_figures() {
+    let robot = Robot::shipped("panda").unwrap();
+    let about = |axis: Vector3<f64>, angle: f64| UnitQuaternion::from_scaled_axis(axis * angle);
+    let mut random = Random(3);
+    for _ in 0..100 {
+        let q = random_configuration(&robot, 3.0, &mut random);
+        let mut expected = Pose::identity();
+        for (&[along, quarters, offset], &angle) in PANDA_DH.iter().zip(q.iter()) {
+            expected *= about(Vector3::x(), quarters * std::f64::consts::FRAC_PI_2);
+            expected *= Pose::translation(along, 0.0, 0.0);
+            expected *= about(Vector3::z(), angle);
+            expected *= Pose::translation(0.0, 0.0, offset);
+        }
+        expected *= Pose::translation(0.0, 0.0, 0.107);
+        expected *= about(Vector3::z(), -std::f64::consts::FRAC_PI_4);
+        // Some thirty products of lengths of about a metre: a few roundings.
+        assert!(Se3::default().distance(&robot.chain.forward(&q), &expected) < 1e-14);
+    }
 }
 
 const MIXED: &str = r#"<robot name="mixed">
@@ -107,6 +171,33 @@ fn prismatic_continuous_and_fixed_joints_compose() {
     let expected = pose_from_xyzw([0.3 + 0.2 - 0.5, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]).unwrap();
     assert!(Se3::default().distance(&pose, &expected) < 1e-15);
     assert_eq!((robot.limits.lower[0], robot.limits.upper[0], robot.limits.upper[1]), (-1.0, 0.75, f64::INFINITY));
+}
+
+/// The chain of `MIXED` written by hand: the slide along x, the spin about z through (0.2, 0, 1), the hand 0.5 m along y.
+#[test]
+fn a_chain_of_space_screws_is_that_of_the_urdf() {
+    let joints = |axis: Vector3<f64>| {
+        let through = Vector3::new(0.2, 0.0, 1.0);
+        let slide = ("slide".to_owned(), Twist::new(Vector3::x(), Vector3::zeros()));
+        vec![slide, ("spin".to_owned(), Twist::new(through.cross(&axis), axis))]
+    };
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let hand = pose_from_xyzw([0.2, 0.5, 1.0], [0.0, 0.0, half, half]).unwrap();
+    let chain = Chain::from_space_screws(joints(Vector3::z()), hand).unwrap();
+    let robot = Robot::from_urdf(&mixed("revolute", ""), MIXED_SETTINGS).unwrap();
+    for q in [[0.0, 0.0], [0.3, 1.1], [-0.8, -2.5]].map(|q| DVector::from_column_slice(&q)) {
+        // Lengths of about a metre and a few products: a few roundings.
+        assert!(Se3::default().distance(&chain.forward(&q), &robot.chain.forward(&q)) < 1e-14);
+        assert!((chain.body_jacobian(&q) - robot.chain.body_jacobian(&q)).amax() < 1e-14);
+    }
+    let refusal = |joints, pose| Chain::from_space_screws(joints, pose).unwrap_err();
+    assert_eq!(refusal(vec![], hand), ManipulatorError::NoJoints);
+    for wrong in [Vector3::z() * 1.001, Vector3::zeros(), Vector3::z() * f64::NAN] {
+        let message = refusal(joints(wrong), hand).to_string();
+        assert!(message.contains("spin") && message.contains("axis"), "{message}");
+    }
+    let nowhere = Pose::translation(f64::NAN, 0.0, 0.0);
+    assert!(matches!(refusal(joints(Vector3::z()), nowhere), ManipulatorError::NonFinite { .. }));
 }
 
 #[test]

@@ -6,9 +6,10 @@ use std::time::Instant;
 
 use mujoco_rs::prelude::*;
 use planner::manipulator::JointTrajectory;
-use planner::manipulator::nalgebra::{DVector, Matrix3, Rotation3, Translation3, UnitQuaternion};
+use planner::manipulator::nalgebra::DVector;
 use planner::se3_geom::Pose;
 
+use crate::chain::site_pose;
 use crate::command::Command;
 use crate::contact::{ContactLog, Touch, touches};
 use crate::error::{Result, SimError};
@@ -60,9 +61,7 @@ impl SimulatedArm {
         let file = path.as_ref().display().to_string();
         let model = model::load(path.as_ref())?;
         let servos = servos(&model, &file)?;
-        let site = (0..model.ffi().nsite as usize)
-            .find(|&site| model.id_to_name(MjtObjBase::mjOBJ_SITE, site) == Some(tool_site))
-            .ok_or_else(|| SimError::MissingSite { file: file.clone(), site: tool_site.into() })?;
+        let site = model::site(&model, &file, tool_site)?;
         let mut free = model.clone();
         free.opt_mut().disableflags |= MjtDisableBit::mjDSBL_CONSTRAINT as i32 | MjtDisableBit::mjDSBL_CONTACT as i32;
         let data = |model| {
@@ -195,11 +194,7 @@ impl SimulatedArm {
     }
 
     fn present_tool_pose(&self) -> Pose {
-        let [x, y, z] = self.plant.site_xpos()[self.tool_site];
-        // MuJoCo's matrices are row by row. Taking the matrix leaves no quaternion order to mistake.
-        let matrix = Matrix3::from_row_slice(&self.plant.site_xmat()[self.tool_site]);
-        let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix));
-        Pose::from_parts(Translation3::new(x, y, z), rotation)
+        site_pose(&self.plant, self.tool_site)
     }
 
     /// Sets all controls; whether all were within their ranges.

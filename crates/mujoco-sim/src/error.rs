@@ -39,6 +39,16 @@ pub enum SimError {
         /// Name of the site.
         site: String,
     },
+    /// What moves the tool is no serial chain of hinges and slides.
+    #[error("{file}: no chain of hinges and slides leads to site {site:?}: {why}")]
+    NotAChain {
+        /// The file.
+        file: String,
+        /// Name of the site.
+        site: String,
+        /// Which joint is in the way, and why.
+        why: String,
+    },
     /// An actuator is not a position servo on one joint.
     #[error("{file}: actuator {actuator:?} {why}; only position servos that act on one joint each are supported")]
     NotAServo {

@@ -4,8 +4,8 @@
 //! JointTrajectory ─► SimulatedArm::execute ─► Execution { tracking, contacts, torques, tool path } ─► pose_errors
 //! ```
 //!
-//! Joints are in rad (m for slides), times in s. Poses are `world_from_tool`: for the UR5e model the world is the arm's `base_link`
-//! and the tool site its `tool0`, so that they agree with the planner's `base_from_tool`.
+//! Joints are in rad (m for slides), times in s. Poses are `world_from_tool`: in the models of the shipped robots the
+//! world is the arm's base frame and the tool site its tool frame, so that they agree with the planner's `base_from_tool`.
 //!
 //! ```no_run
 //! use mujoco_sim::{ExecuteOptions, SimulatedArm, TOOL_SITE, model_file, read_trajectory};
@@ -17,6 +17,7 @@
 //! ```
 
 mod arm;
+mod chain;
 mod command;
 mod contact;
 mod error;
@@ -26,6 +27,7 @@ mod servo;
 mod trajectory_file;
 
 pub use arm::{ExecuteOptions, SimulatedArm};
+pub use chain::read_chain;
 pub use contact::{ContactEvent, Touch};
 pub use error::SimError;
 pub use execution::{Execution, JointTracking, PoseErrors, Sample};
@@ -33,5 +35,5 @@ pub use model::model_file;
 pub use planner;
 pub use trajectory_file::read_trajectory;
 
-/// The site that marks the flange in the models of MuJoCo Menagerie.
+/// The site that marks the tool in the models of the set-up, and in many of MuJoCo Menagerie.
 pub const TOOL_SITE: &str = "attachment_site";

@@ -9,7 +9,7 @@ use mujoco_rs::prelude::*;
 use crate::error::{Result, SimError};
 
 /// Names of the models that the set-up provides.
-const KNOWN: &[&str] = &["ur5e"];
+const KNOWN: &[&str] = &["ur5e", "vx300s", "panda"];
 
 /// Folder with models, where it is not that of the checkout.
 const MODELS_VARIABLE: &str = "REORDER_MODELS";
@@ -36,8 +36,11 @@ pub fn model_file(robot: &str) -> Result<PathBuf> {
 pub(crate) fn load(path: &Path) -> Result<MjModel> {
     let file = path.display().to_string();
     // MuJoCo reads the file again, for the sake of the meshes beside it; this finds what it would not say or would abort on.
-    let hint =
-        if path.is_file() { "" } else { "; `cargo xtask setup` fetches ur5e.xml, REORDER_MODELS names another folder" };
+    let hint = if path.is_file() {
+        ""
+    } else {
+        "; `cargo xtask setup` fetches those of the shipped robots, REORDER_MODELS names another folder"
+    };
     fs::read_to_string(path).map_err(|source| SimError::Read { file: file.clone(), source, hint })?;
     let refused = |error: MjModelError| {
         let reason = match error {
@@ -47,4 +50,11 @@ pub(crate) fn load(path: &Path) -> Result<MjModel> {
         SimError::Model { file, reason: reason.split_whitespace().collect::<Vec<_>>().join(" ") }
     };
     MjModel::from_xml(path).map_err(refused)
+}
+
+/// Index of the site of that name.
+pub(crate) fn site(model: &MjModel, file: &str, name: &str) -> Result<usize> {
+    (0..model.ffi().nsite as usize)
+        .find(|&site| model.id_to_name(MjtObjBase::mjOBJ_SITE, site) == Some(name))
+        .ok_or_else(|| SimError::MissingSite { file: file.into(), site: name.into() })
 }

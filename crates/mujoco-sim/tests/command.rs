@@ -174,7 +174,7 @@ fn bad_input_gets_one_sentence_that_says_where() {
         let arguments = format!("good.csv {rest}");
         complaint(&folder, &arguments.split_whitespace().collect::<Vec<_>>())
     };
-    assert!(with("--robot panda").starts_with("there is no model named \"panda\": known are ur5e"));
+    assert!(with("--robot hal9000").starts_with("there is no model named \"hal9000\": known are ur5e"));
     assert!(with("--robot absent.xml").starts_with("absent.xml: "));
     assert!(with("--robot ur5e --settle -1").starts_with("option settle_s is -1"));
     assert_eq!(

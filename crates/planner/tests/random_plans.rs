@@ -2,7 +2,7 @@
 //! passes every pose; everything else is a refusal. `cargo xtask soak plans` runs thousands, the tests a seeded sample.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use planner::manipulator::nalgebra::{DVector, Vector3};
+use planner::manipulator::nalgebra::Vector3;
 use planner::manipulator::{Robot, audit};
 use planner::reorder::Topology;
 use planner::se3_geom::{LieGroup, Manifold, Pose, So3, So3Group};
@@ -10,8 +10,7 @@ use planner::{Config, Refusal, Request, plan};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 
-const HOME: [f64; 6] = [-1.57, -1.57, 1.57, -1.57, -1.57, 0.0];
-const SAMPLE: u32 = 12;
+const SAMPLE: u32 = 8;
 
 #[derive(Debug, Clone)]
 struct Curve {
@@ -91,10 +90,25 @@ fn same_curve(truth: &[usize], found: &[usize], closed: bool) -> bool {
 }
 
 #[test]
-fn what_is_planned_is_true_legal_and_exact() {
+fn what_is_planned_for_the_ur5e_is_true_legal_and_exact() {
+    assert_true_legal_and_exact("ur5e");
+}
+
+#[test]
+fn what_is_planned_for_the_viperx_is_true_legal_and_exact() {
+    assert_true_legal_and_exact("vx300s");
+}
+
+#[test]
+fn what_is_planned_for_the_panda_is_true_legal_and_exact() {
+    assert_true_legal_and_exact("panda");
+}
+
+fn assert_true_legal_and_exact(name: &str) {
     let cases = std::env::var("REORDER_SOAK_CASES").ok().map_or(SAMPLE, |n| n.parse().unwrap());
-    let robot = Robot::shipped("ur5e").unwrap();
-    let home = robot.chain.forward(&DVector::from_column_slice(&HOME));
+    let robot = Robot::shipped(name).unwrap();
+    let home = robot.chain.forward(&robot.preferred);
+    let start = robot.preferred.as_slice().to_vec();
     let tally = std::cell::RefCell::new(std::collections::BTreeMap::<String, usize>::new());
     let count = |what: &str| -> Result<(), TestCaseError> {
         *tally.borrow_mut().entry(what.to_owned()).or_default() += 1;
@@ -115,7 +129,7 @@ fn what_is_planned_is_true_legal_and_exact() {
             let mut truth = vec![0; curve.poses];
             rows.iter().enumerate().for_each(|(row, &i)| truth[i] = row);
             let poses: Vec<Pose> = rows.iter().map(|&i| in_order[i]).collect();
-            let request = Request { poses: poses.clone(), start: Some(HOME.to_vec()), ..Request::default() };
+            let request = Request { poses: poses.clone(), start: Some(start.clone()), ..Request::default() };
             let plan = match plan(&robot, &Config::default(), &request) {
                 Ok(plan) => plan,
                 Err(Refusal::Verdict { .. }) => return count("refused: ambiguous"),
@@ -137,7 +151,7 @@ fn what_is_planned_is_true_legal_and_exact() {
             count(if closed { "planned: closed" } else { "planned: open" })
         })
         .unwrap();
-    println!("{cases} random plans: {:?}", tally.borrow());
+    println!("{cases} random plans for the {name}: {:?}", tally.borrow());
     let planned: usize = tally.borrow().iter().filter(|(what, _)| what.starts_with("planned")).map(|(_, n)| n).sum();
     assert!(planned > cases as usize / 4, "too few were planned to say anything: {:?}", tally.borrow());
 }

@@ -17,7 +17,7 @@ use crate::source::Source;
 pub(crate) struct Arguments {
     #[command(flatten)]
     source: Source,
-    /// A shipped robot by name (ur5e), or a URDF file, which needs --limits
+    /// A shipped robot by name (ur5e, vx300s, panda), or a URDF file, which needs --limits
     #[arg(long, value_name = "NAME|FILE.urdf")]
     robot: String,
     /// Frames and limits of every joint, in the form of config/robots/ur5e.yaml

@@ -39,9 +39,11 @@
 //! Where something in this list speaks against the order (and there are no more than [`MOST_REPAIRED_UNASKED`] points), the order
 //! is sought again as the path that is short and turns little ([`Method::Repaired`]): by local search with 3 units of length for a
 //! unit of turning. It is judged by searches that should find the same, at other prices of turning (0, 1, 8), from another start, and
-//! at other weights: every place where one of them differs is a doubt. If none differs, and the samples are smooth with ε up to 1,
-//! doubts about neighbourhoods are taken back, and the order is plausible; on noisy or sparser samples they stand, since there all
-//! searches agree on one wrong order too often.
+//! at other weights: every place where one of them differs is a doubt. If none differs, the samples are clean (nine of ten points miss
+//! the parabola through their neighbours by less than a quarter of a gap, and at no more than five points in a row does the order turn
+//! back), and no more than twelve points in a row are in dispute, as where a curve crosses itself, doubts about neighbourhoods are taken
+//! back, and the order is plausible. On noisy samples, and where a curve runs back beside itself, they stand, since there all searches
+//! agree on one wrong order too often.
 //!
 //! An order by a method that was asked for ([`MethodChoice`]) is also doubted where the method's edges are no single curve, and where the
 //! minimum spanning tree has others. Several curves ordered apart ([`ComponentsChoice`]) are trusted as the least of them is; with
@@ -93,8 +95,9 @@
 //!
 //! Told from the ends of the path: closed if their distance is at most 1.1 times the longest gap (up to 1.5 times where the gaps next
 //! to the ends are as uneven) and at most twice the longest of the five gaps next to either end, and the curve turns by less
-//! than 90° at both ends. Also closed where the gaps look like those of independent points, the closing gap is at most twice the
-//! longest, and the loop meets every condition of a certified order. Where a loop is asked for and the tree is a path that nothing
+//! than 90° at both ends. Where the gaps look like those of independent points, of which the longest exceeds all others by more than
+//! two mean gaps only once in seven times, that much is enough. Also closed where they do, the closing gap is at most twice the longest,
+//! and the loop meets every condition of a certified order. Where a loop is asked for and the tree is a path that nothing
 //! speaks against, its ends are joined; elsewhere a short loop is sought.
 
 mod agreement;

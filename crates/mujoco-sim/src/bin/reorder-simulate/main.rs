@@ -24,7 +24,7 @@ use crate::summary::Summary;
 struct Arguments {
     /// CSV with the header t,JOINT.position…,JOINT.velocity…,JOINT.acceleration…; `-` reads standard input
     trajectory: PathBuf,
-    /// A model by name (ur5e), or an MJCF file with position servos
+    /// A model by name (ur5e, vx300s, panda), or an MJCF file with position servos
     #[arg(long, value_name = "NAME|MODEL.xml")]
     robot: String,
     /// Site of the model that marks the tool
