@@ -20,9 +20,10 @@ const SHORT_GAP: f64 = 8.0;
 /// How many gaps on either side of a gap are around it.
 const GAP_WINDOW: usize = 5;
 
-/// With fewer distinct points than this (but more than two, whose order is no question) most sets of points pass every test,
-/// whatever they were sampled from: of random triples in a square every fourth did, of sets of five every twentieth.
-const FEWEST_POINTS: usize = 8;
+/// With fewer distinct points than this (but more than two, whose order is no question) some sets of points pass every test,
+/// whatever they were sampled from: of random triples in a square every fourth did, of sets of five every twentieth; of eight samples
+/// of an arc that were plausible, some in a hundred were wrong.
+const FEWEST_POINTS: usize = 10;
 /// How many gaps in a row must alternate between longer and shorter before that is a doubt. A curve that runs back beside itself
 /// interleaves two passes, and then they all do; twelve gaps in random order alternate by chance once in ninety times, and then
 /// rarely pass the test of evenness too.

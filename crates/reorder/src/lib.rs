@@ -9,9 +9,9 @@
 //! use se3_geom::{R3, nalgebra::Vector3};
 //! # fn main() -> Result<(), reorder::OrderError> {
 //! let helix = |t: f64| Vector3::new(t.cos(), t.sin(), 0.3 * t);
-//! let shuffled = [0.6, 0.0, 1.2, 0.9, 2.1, 0.3, 1.5, 1.8].map(helix);
+//! let shuffled = [0.6, 0.0, 1.2, 0.9, 2.1, 0.3, 1.5, 1.8, 2.7, 2.4].map(helix);
 //! let ordering = order(&R3::default(), &shuffled, &Options::default())?;
-//! assert_eq!(ordering.order, [1, 5, 0, 3, 2, 6, 7, 4]);
+//! assert_eq!(ordering.order, [1, 5, 0, 3, 2, 6, 7, 4, 9, 8]);
 //! assert_eq!((ordering.topology, ordering.verdict), (Topology::Open, Verdict::Plausible));
 //! # Ok(()) }
 //! ```
@@ -33,7 +33,7 @@
 //! - two neighbours both occur more than once;
 //! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, as where a curve runs back beside
 //!   itself;
-//! - there are three to seven distinct points: too few to tell one curve from another;
+//! - there are three to nine distinct points: too few to tell one curve from another;
 //! - for poses: the order changes when a radian counts for half or for twice as many metres.
 //!
 //! Where something in this list speaks against the order (and there are no more than [`MOST_REPAIRED_UNASKED`] points), the order

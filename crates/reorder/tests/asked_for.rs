@@ -241,7 +241,7 @@ fn one_curve_is_the_same_whether_or_not_there_might_be_several() {
     let two = [arc(0.0, 20), arc(100.0, 20)].concat();
     let at = |start| order(&R2::default(), &two, &Options { start, ..apart() });
     assert_eq!(at(Some(39)).unwrap().order, (20..40).rev().chain(0..20).collect::<Vec<_>>());
-    assert_eq!(at(Some(25)), Err(OrderError::StartNotAnEnd { start: 25, ends: [39, 20] }));
+    assert_eq!(at(Some(25)), Err(OrderError::StartNotAnEnd { start: 25, ends: [20, 39] }));
     assert_eq!(at(Some(40)), Err(OrderError::StartOutOfRange { start: 40, count: 40 }));
     let far = [arc(0.0, 20), vec![Vector2::new(500.0, 0.0)]].concat();
     let at_outlier = order(&R2::default(), &far, &Options { start: Some(20), ..apart() });
