@@ -93,7 +93,7 @@ impl SimulatedArm {
     pub fn touches(&mut self, q: &[f64]) -> Result<Vec<Touch>> {
         self.place(q)?;
         self.plant.fwd_position();
-        Ok(touches(self.plant.model(), self.plant.contact()).into_iter().map(|(_, touch)| touch).collect())
+        Ok(touches(self.plant.model(), self.plant.contact(), 0.0).into_iter().map(|(_, touch)| touch).collect())
     }
 
     /// Executes a trajectory from rest at its first point, and lets the arm settle at its last.
@@ -136,7 +136,7 @@ impl SimulatedArm {
             self.plant.step1();
             let (position, velocity) = self.joint_state();
             tally.state(&(&position - &reference[0]));
-            contacts.record(time_s, touches(self.plant.model(), self.plant.contact()));
+            contacts.record(time_s, touches(self.plant.model(), self.plant.contact(), 0.0));
             tool.push(self.present_tool_pose());
             if step % stride == 0 || step == steps {
                 samples.push(Sample { time_s, reference: reference[0].clone(), position, velocity });
@@ -167,6 +167,22 @@ impl SimulatedArm {
             tool,
             realtime_factor: steps as f64 * timestep_s / elapsed_s,
         })
+    }
+
+    pub(crate) fn servos(&self) -> &[Servo] {
+        &self.servos
+    }
+
+    pub(crate) fn model(&self) -> &MjModel {
+        self.plant.model()
+    }
+
+    /// The same model at its initial state, where shapes nearer than `margin_m` to each other count as contacts.
+    pub(crate) fn kinematic_twin(&self, margin_m: f64) -> Result<MjData<Arc<MjModel>>> {
+        let mut model = self.plant.model().clone();
+        model.geom_margin_mut().fill(margin_m);
+        MjData::try_new(Arc::new(model))
+            .map_err(|error| SimError::Model { file: "the loaded model".into(), reason: error.to_string() })
     }
 
     /// Puts the arm at rest at a configuration, everything else of the model as it was loaded.

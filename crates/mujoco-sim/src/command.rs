@@ -42,6 +42,25 @@ impl<'a> Command<'a> {
     }
 }
 
+impl Command<'_> {
+    /// Interval by interval and servo by servo, the Bézier points of the quintic that leads from point to point: it stays between the
+    /// least and the greatest of them, and its way is at most the sum of their differences.
+    pub(crate) fn bezier_points(&self) -> impl Iterator<Item = Vec<[f64; 6]>> {
+        self.trajectory.points.windows(2).map(|pair| {
+            let h = pair[1].time_s - pair[0].time_s;
+            let quintic = |&joint: &usize| {
+                let [from, to] = [&pair[0], &pair[1]].map(|p| {
+                    (p.positions[joint], h * p.velocities[joint] / 5.0, h * h * p.accelerations[joint] / 20.0)
+                });
+                let (p0, v0, a0) = from;
+                let (p5, v5, a5) = to;
+                [p0, p0 + v0, p0 + 2.0 * v0 + a0, p5 - 2.0 * v5 + a5, p5 - v5, p5]
+            };
+            self.places.iter().map(quintic).collect()
+        })
+    }
+}
+
 fn check_points(trajectory: &JointTrajectory) -> Result<()> {
     if trajectory.points.is_empty() {
         return Err(SimError::EmptyTrajectory);

@@ -8,32 +8,32 @@ use mujoco_rs::wrappers::MjContact;
 pub struct Touch {
     /// Names of the two bodies; `world` is what does not move.
     pub bodies: [String; 2],
-    /// How far they are inside each other, in m.
+    /// How far they are inside each other, in m; negative where they are apart.
     pub depth_m: f64,
 }
 
-/// An unbroken span of time during which the same two shapes touch.
+/// An unbroken span of time during which the same two shapes touch, or are nearer than was asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactEvent {
     /// Names of the two bodies.
     pub bodies: [String; 2],
     /// When it began, in s.
     pub from_s: f64,
-    /// The last time at which they still touched, in s.
+    /// The last time at which they still did, in s.
     pub until_s: f64,
-    /// Greatest depth in m.
+    /// Greatest depth in m; negative where they stay apart.
     pub depth_max_m: f64,
 }
 
-/// The points that touch in the present state; a contact within the margin but with a gap is none.
-pub(crate) fn touches(model: &MjModel, contacts: &[MjContact]) -> Vec<([i32; 2], Touch)> {
+/// The points at which shapes are no farther apart than `within_m` in the present state.
+pub(crate) fn touches(model: &MjModel, contacts: &[MjContact], within_m: f64) -> Vec<([i32; 2], Touch)> {
     let body_of = |geom: i32| {
         // Contacts of flexible bodies have no geom; such models have no rigid arm to name.
         let body = model.geom_bodyid().get(geom as usize).copied().unwrap_or_default() as usize;
         let name = model.id_to_name(MjtObjBase::mjOBJ_BODY, body).filter(|name| !name.is_empty());
         name.map_or_else(|| format!("body {body}"), str::to_owned)
     };
-    let touching = contacts.iter().filter(|contact| contact.dist <= 0.0);
+    let touching = contacts.iter().filter(|contact| contact.dist <= within_m);
     touching
         .map(|contact| (contact.geom, Touch { bodies: contact.geom.map(body_of), depth_m: -contact.dist }))
         .collect()

@@ -122,6 +122,19 @@ pub enum SimError {
         /// The bound.
         limit_s: f64,
     },
+    /// A sweep would not end in reasonable time.
+    #[error("a sweep with a clearance of {clearance_m} m would take {checks:.0} checks, more than {limit:.0}")]
+    TooManyChecks {
+        /// How many.
+        checks: f64,
+        /// The bound.
+        limit: f64,
+        /// The clearance that was asked for.
+        clearance_m: f64,
+    },
+    /// Nothing that moves has a shape, so that freedom from contacts would mean nothing.
+    #[error("the model has no shape that moves and can collide: nothing can be said about contacts")]
+    NoShapes,
     /// An option is out of its range.
     #[error("option {name} is {value}, but must be {must_be}")]
     InvalidOption {

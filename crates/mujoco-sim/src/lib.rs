@@ -7,6 +7,8 @@
 //! Joints are in rad (m for slides), times in s. Poses are `world_from_tool`: in the models of the shipped robots the
 //! world is the arm's base frame and the tool site its tool frame, so that they agree with the planner's `base_from_tool`.
 //!
+//! Whether the arm hits itself or what stands around it is told without running anything, by [`SimulatedArm::sweep`].
+//!
 //! ```no_run
 //! use mujoco_sim::{ExecuteOptions, SimulatedArm, TOOL_SITE, model_file, read_trajectory};
 //! # fn main() -> Result<(), mujoco_sim::SimError> {
@@ -23,7 +25,9 @@ mod contact;
 mod error;
 mod execution;
 mod model;
+mod reach;
 mod servo;
+mod sweep;
 mod trajectory_file;
 
 pub use arm::{ExecuteOptions, SimulatedArm};
@@ -33,6 +37,7 @@ pub use error::SimError;
 pub use execution::{Execution, JointTracking, PoseErrors, Sample};
 pub use model::model_file;
 pub use planner;
+pub use sweep::{Sweep, SweepOptions};
 pub use trajectory_file::read_trajectory;
 
 /// The site that marks the tool in the models of the set-up, and in many of MuJoCo Menagerie.

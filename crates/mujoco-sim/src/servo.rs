@@ -8,6 +8,7 @@ use crate::error::{Result, SimError};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Servo {
     pub(crate) joint: String,
+    pub(crate) joint_index: usize,
     /// Where the joint's position, velocity, control and actuator force stand in MuJoCo's vectors.
     pub(crate) position: usize,
     pub(crate) velocity: usize,
@@ -97,6 +98,7 @@ fn servo(model: &MjModel, actuator: usize) -> std::result::Result<Servo, &'stati
     };
     Ok(Servo {
         joint: name.to_owned(),
+        joint_index: joint,
         position: model.jnt_qposadr()[joint] as usize,
         velocity: model.jnt_dofadr()[joint] as usize,
         control,

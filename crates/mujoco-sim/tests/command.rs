@@ -122,7 +122,16 @@ fn contacts_are_told_and_are_no_failure() {
     let summary: serde_json::Value = serde_json::from_str(&json).unwrap();
     let count = summary["contacts"].as_u64().unwrap();
     assert!(count > 0 && summary["contact_events"].as_array().unwrap().len() as u64 == count);
-    assert!(summary["pose_error_max_m"].is_null());
+    assert!(summary["pose_error_max_m"].is_null() && summary["sweep"].is_null());
+
+    let swept = ["fold.csv", "--robot", "ur5e", "--clearance", "0.01"];
+    let text = stdout(&simulate(&folder, &swept));
+    assert!(text.contains("planned path ") && text.contains(" mm apart"), "{text}");
+    let json = stdout(&simulate(&folder, &[&swept[..], &["--format", "json"]].concat()));
+    let summary: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let sweep = &summary["sweep"];
+    let (contacts, approaches) = (sweep["contacts"].as_array().unwrap(), sweep["approaches"].as_array().unwrap());
+    assert!(!contacts.is_empty() && approaches.len() >= contacts.len() && sweep["checks"].as_u64().unwrap() > 100);
 }
 
 #[test]

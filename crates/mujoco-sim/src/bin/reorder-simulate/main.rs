@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
-use mujoco_sim::{ExecuteOptions, SimError, SimulatedArm, TOOL_SITE, model_file, read_trajectory};
+use mujoco_sim::{ExecuteOptions, SimError, SimulatedArm, SweepOptions, TOOL_SITE, model_file, read_trajectory};
 
 use crate::due::{DuePoses, PoseSource};
 use crate::summary::Summary;
@@ -35,6 +35,9 @@ struct Arguments {
     /// How long the run goes on after the trajectory's end, in s
     #[arg(long, default_value_t = ExecuteOptions::default().settle_s, allow_negative_numbers = true)]
     settle: f64,
+    /// Before the run, looks for bodies that touch, or come nearer to each other than this many metres, anywhere along the trajectory
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    clearance: Option<f64>,
     /// Writes trajectory, poses and executed tool path as a bag
     #[arg(short, long, value_name = "OUT.mcap")]
     output: Option<PathBuf>,
@@ -75,9 +78,11 @@ fn run(arguments: &Arguments) -> Result<(), SimError> {
     let due = DuePoses::read(&arguments.poses)?;
     let mut arm = SimulatedArm::load(model_file(&arguments.robot)?, &arguments.tool_site)?;
     let options = ExecuteOptions { settle_s: arguments.settle, ..ExecuteOptions::default() };
+    let sweep =
+        arguments.clearance.map(|clearance_m| arm.sweep(&trajectory, &SweepOptions { clearance_m })).transpose()?;
     let execution = arm.execute(&trajectory, &options)?;
     let errors = due.times_s.as_deref().map(|times| execution.pose_errors(&due.poses, times)).transpose()?;
-    let summary = Summary::of(&execution, errors);
+    let summary = Summary::of(&execution, errors, sweep.as_ref());
 
     if let Some(path) = &arguments.output {
         bag::write(path, &trajectory, &due, &execution)?;
@@ -92,7 +97,7 @@ fn run(arguments: &Arguments) -> Result<(), SimError> {
     }
     print(&match arguments.format {
         Format::Json => summary.to_json() + "\n",
-        Format::Text => summary.to_text(&execution),
+        Format::Text => summary.to_text(),
     })
 }
 

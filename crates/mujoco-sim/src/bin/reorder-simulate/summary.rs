@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use mujoco_sim::{Execution, PoseErrors};
+use mujoco_sim::{ContactEvent, Execution, PoseErrors, Sweep};
 use serde::Serialize;
 
 /// The JSON object of the command.
@@ -16,10 +16,20 @@ pub(crate) struct Summary {
     pose_error_max_rad: Option<f64>,
     contacts: usize,
     contact_events: Vec<Contact>,
+    /// Null where no clearance was asked for.
+    sweep: Option<Swept>,
     realtime_factor: f64,
     max_torque_ratio: f64,
     saturated_steps: usize,
     joints: Vec<Joint>,
+}
+
+/// What is met along the trajectory as it was planned.
+#[derive(Debug, Serialize)]
+struct Swept {
+    contacts: Vec<Contact>,
+    approaches: Vec<Contact>,
+    checks: usize,
 }
 
 #[derive(Debug, Serialize)]
@@ -39,12 +49,12 @@ struct Joint {
 }
 
 impl Summary {
-    pub(crate) fn of(execution: &Execution, errors: Option<PoseErrors>) -> Self {
-        let contact_events = execution.contacts.iter().map(|event| Contact {
-            bodies: event.bodies.clone(),
-            from_s: event.from_s,
-            until_s: event.until_s,
-            depth_max_m: event.depth_max_m,
+    pub(crate) fn of(execution: &Execution, errors: Option<PoseErrors>, sweep: Option<&Sweep>) -> Self {
+        let events = |events: &[ContactEvent]| events.iter().map(Contact::of).collect::<Vec<_>>();
+        let sweep = sweep.map(|sweep| Swept {
+            contacts: events(&sweep.contacts),
+            approaches: events(&sweep.approaches),
+            checks: sweep.checks,
         });
         let joints = execution.joints.iter().map(|joint| Joint {
             name: joint.name.clone(),
@@ -59,7 +69,8 @@ impl Summary {
             pose_error_max_m: errors.map(|errors| errors.max_m),
             pose_error_max_rad: errors.map(|errors| errors.max_rad),
             contacts: execution.contacts.len(),
-            contact_events: contact_events.collect(),
+            contact_events: events(&execution.contacts),
+            sweep,
             realtime_factor: execution.realtime_factor,
             max_torque_ratio: execution.max_torque_ratio,
             saturated_steps: execution.saturated_steps,
@@ -72,7 +83,7 @@ impl Summary {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    pub(crate) fn to_text(&self, execution: &Execution) -> String {
+    pub(crate) fn to_text(&self) -> String {
         let mut text = format!(
             "trajectory   {:.3} s, simulated {:.0} times as fast as real time\n\
              tracking     {:.2e} rad rms, {:.2e} rad at worst\n\
@@ -88,12 +99,29 @@ impl Summary {
             text += &format!("poses        {metres:.2e} m and {radians:.2e} rad off at worst\n");
         }
         text += &format!("contacts     {}\n", self.contacts);
-        for event in &execution.contacts {
-            let [one, other] = &event.bodies;
-            let (from, until, depth_mm) = (event.from_s, event.until_s, 1e3 * event.depth_max_m);
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "  {one} and {other}, {from:.3} to {until:.3} s, {depth_mm:.2} mm deep");
+        list(&mut text, &self.contact_events);
+        if let Some(sweep) = &self.sweep {
+            let (contacts, approaches) = (sweep.contacts.len(), sweep.approaches.len());
+            let _ =
+                writeln!(text, "planned path {contacts} contacts, {approaches} approaches in {} checks", sweep.checks);
+            list(&mut text, &sweep.approaches);
         }
         text
+    }
+}
+
+/// A line an event. Writing to a string cannot fail.
+fn list(text: &mut String, events: &[Contact]) {
+    for Contact { bodies: [one, other], from_s, until_s, depth_max_m } in events {
+        let how = if *depth_max_m >= 0.0 { "deep" } else { "apart" };
+        let depth_mm = 1e3 * depth_max_m.abs();
+        let _ = writeln!(text, "  {one} and {other}, {from_s:.3} to {until_s:.3} s, {depth_mm:.2} mm {how}");
+    }
+}
+
+impl Contact {
+    fn of(event: &ContactEvent) -> Self {
+        let ContactEvent { bodies, from_s, until_s, depth_max_m } = event.clone();
+        Self { bodies, from_s, until_s, depth_max_m }
     }
 }
