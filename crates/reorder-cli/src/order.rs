@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     /// Search for a shorter and smoother order where the minimum spanning tree is none to trust
     #[arg(long, default_value = "auto")]
     repair: RepairChoice,
-    /// Move noisy points onto the line of their neighbours before they are ordered; what is handed on stays as it was
+    /// Move noisy points toward the curve of their neighbours before they are ordered; what is handed on stays as it was
     #[arg(long)]
     denoise: bool,
     /// Print what speaks for and against the order, for a person, in place of the order
@@ -63,11 +63,11 @@ enum Method {
     Auto,
     /// Minimum spanning tree
     Mst,
-    /// Nearest neighbours on either side of every point
+    /// Nearest neighbours on either side of every point; time grows with the square of their number
     NnCrust,
     /// Voronoi and Delaunay edges, in the plane
     Crust,
-    /// Always on to the nearest point left, from --start or else row 0; mostly wrong from within an arc
+    /// Always on to the nearest point left, from --start or else row 0; mostly wrong from within an arc, and as slow as nn-crust
     Nearest,
 }
 

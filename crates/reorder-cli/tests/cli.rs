@@ -3,35 +3,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-use tempfile::TempDir;
+mod support;
 
-const BAGS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data");
-
-fn reorder(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_reorder")).args(arguments).stdin(Stdio::null()).output().unwrap()
-}
-
-fn out(output: &Output) -> String {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-/// Exit code and the sentence on standard error; there is exactly one line, and nothing on standard output.
-fn refusal(arguments: &[&str]) -> (i32, String) {
-    let output = reorder(arguments);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(said.lines().count(), 1, "{said}");
-    assert!(output.stdout.is_empty());
-    (output.status.code().unwrap(), said.trim_end().to_owned())
-}
-
-fn file(folder: &TempDir, name: &str, content: &str) -> String {
-    let path = folder.path().join(name);
-    fs::write(&path, content).unwrap();
-    path.display().to_string()
-}
+use support::*;
 
 fn truth(name: &str) -> Vec<u64> {
     let text = fs::read_to_string(format!("{BAGS}/{name}.truth.json")).unwrap();
@@ -64,12 +40,6 @@ fn order_prints_the_whole_object_for_a_recorded_bag() {
             assert!(object["certificate"].get(key).is_some(), "{key}");
         }
     }
-}
-
-/// Points on a quarter circle, written in the order 0 3 6 9 2 5 8 1 4 7.
-fn arc(columns: &str, row: impl Fn(f64) -> String) -> String {
-    let rows: Vec<String> = (0..10).map(|i| row(f64::from((i * 3) % 10) * 0.15)).collect();
-    format!("{columns}\n{}\n", rows.join("\n"))
 }
 
 #[test]
@@ -148,69 +118,6 @@ fn plan_writes_csv_and_mcap() {
         ["0", "-1.5708", "-1.5708"],
         "without -o the CSV goes to standard output, from where the robot stands"
     );
-}
-
-const COLUMNS: &str = "name one with --manifold to use its columns and ignore the others";
-
-#[test]
-fn bad_input_exits_with_2_and_names_file_and_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let pose = "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n0.1,0,0,0,0,0,1\n";
-    for (name, content, sentence) in [
-        ("nan.csv", format!("{pose}NaN,0,0,0,0,0,1\n"), "nan.csv, line 4: x is not finite: NaN"),
-        (
-            "zero.csv",
-            format!("{pose}0.2,0,0,0,0,0,0\n"),
-            "zero.csv, line 4: the quaternion is zero, so there is no orientation",
-        ),
-        (
-            "norm.csv",
-            format!("{pose}0.2,0,0,0,0,0,2\n"),
-            "norm.csv, line 4: the quaternion has norm 2.000000 instead of 1",
-        ),
-        ("word.csv", format!("{pose}a,0,0,0,0,0,1\n"), "word.csv, line 4: x is not a number: \"a\""),
-        ("short.csv", format!("{pose}0,0\n"), "short.csv, line 4: 2 fields instead of 7"),
-        ("empty.csv", String::new(), "empty.csv holds no poses"),
-        (
-            "one.csv",
-            "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n".into(),
-            "one.csv: there are 1 points to order, but at least 2 are needed",
-        ),
-        ("equal.csv", "x,y\n1,2\n1,2\n1,2\n".into(), "equal.csv: all 3 points are equal, so there is nothing to order"),
-        ("columns.csv", "a,b\n1,2\n".into(), COLUMNS),
-        ("far.csv", "lat,lon\n0,0\n91,0\n".into(), "far.csv, line 3: lat is beyond 90 degrees: 91"),
-        ("flat.csv", "x,y,theta,scale\n0,0,1,1\n1,0,2,0\n".into(), "flat.csv, line 3: scale is not positive: 0"),
-        ("columns.csv", "x,y,qx\n0,0,1\n1,0,2\n".into(), COLUMNS),
-    ] {
-        let path = file(&folder, name, &content);
-        let (code, said) = refusal(&["order", &path]);
-        assert_eq!(code, 2, "{said}");
-        assert!(said.ends_with(sentence) && said.starts_with("reorder: "), "{said}");
-    }
-    let table = file(&folder, "wide.csv", "x,y,z,w\n0,0,0,1\n1,0,0,2\n2,0,0,3\n");
-    assert_eq!(out(&reorder(&["order", &table, "--manifold", "rn", "--format", "indices"])), "0\n1\n2\n");
-    let (code, said) = refusal(&["order", &table]);
-    assert!(code == 2 && said.ends_with(COLUMNS), "{said}");
-    assert_eq!(out(&reorder(&["order", &table, "--manifold", "r3", "--format", "indices"])), "0\n1\n2\n");
-    let (code, said) = refusal(&["order", "/nowhere/at/all.csv"]);
-    assert_eq!((code, said.as_str()), (2, "reorder: /nowhere/at/all.csv: No such file or directory (os error 2)"));
-    let path = file(&folder, "plan.csv", &format!("{pose}NaN,0,0,0,0,0,1\n"));
-    let (code, said) = refusal(&["plan", &path, "--robot", "ur5e"]);
-    assert_eq!(code, 2);
-    assert!(said.ends_with("plan.csv, line 4: x is not finite: NaN"), "{said}");
-    let (code, said) = refusal(&["plan", &format!("{BAGS}/lasa_sine"), "--robot", "hal9000"]);
-    assert!(code == 2 && said.contains("hal9000") && said.contains("ur5e"), "{said}");
-}
-
-#[test]
-fn a_truncated_bag_is_refused_with_what_could_be_read() {
-    let folder = tempfile::tempdir().unwrap();
-    let whole = fs::read(format!("{BAGS}/lasa_sine/lasa_sine.mcap")).unwrap();
-    let path = folder.path().join("cut.mcap");
-    fs::write(&path, &whole[..whole.len() / 2]).unwrap();
-    let (code, said) = refusal(&["order", path.to_str().unwrap()]);
-    assert_eq!(code, 2);
-    assert!(said.contains("cut.mcap is cut off") && said.contains("readable messages"), "{said}");
 }
 
 /// A pose two metres away is no input error: the poses are fine, this robot cannot reach them.

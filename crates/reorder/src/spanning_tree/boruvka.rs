@@ -97,8 +97,8 @@ impl Forest {
         let leaves = candidates.par_chunks_mut(LANES).zip(&mut self.leaves).enumerate();
         leaves.filter(|(leaf, _)| busy(*leaf)).for_each_init(Stack::new, |stack, (leaf, (candidates, state))| {
             let component = components.of_node[tree.node_of_leaf[leaf] as usize];
-            if component == MIXED || state.bound <= components.shortest(component) {
-                search_foreign(tree, chords, &components, leaf, candidates, stack);
+            let reach = if component == MIXED { f64::MAX } else { components.shortest(component) };
+            if state.bound <= reach && search_foreign(tree, chords, &components, leaf, candidates, stack) {
                 state.summarise(candidates, &components, leaf);
             }
         });

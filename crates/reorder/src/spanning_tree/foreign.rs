@@ -33,7 +33,8 @@ impl Components<'_> {
     }
 }
 
-/// Searches for those points of a leaf that have no candidate left and may yet have the shortest edge of their component.
+/// Searches for those points of a leaf that have no candidate left and may yet have the shortest edge of their component,
+/// and tells whether there were any.
 pub(super) fn search_foreign<const F: usize, const R: usize>(
     tree: &KdTree<F, R>,
     chords: &Chords,
@@ -41,7 +42,7 @@ pub(super) fn search_foreign<const F: usize, const R: usize>(
     leaf: usize,
     candidates: &mut [Candidates],
     stack: &mut Stack,
-) {
+) -> bool {
     let first_slot = leaf * LANES;
     let mut own = [MIXED; LANES];
     let mut seeks = [false; LANES];
@@ -52,7 +53,7 @@ pub(super) fn search_foreign<const F: usize, const R: usize>(
             && candidates.bound <= components.shortest(own[lane]);
     }
     if !seeks.contains(&true) {
-        return;
+        return false;
     }
     let mut seeker = Foreign {
         rows: &tree.rows,
@@ -75,6 +76,7 @@ pub(super) fn search_foreign<const F: usize, const R: usize>(
             candidates.bound = shortest.next_up();
         }
     }
+    true
 }
 
 struct Foreign<'a> {

@@ -6,6 +6,7 @@ use super::candidates::{Candidates, K, NOBODY, tie_precedes};
 use super::chord::Chords;
 use super::kd_tree::{KdTree, LANES};
 use super::traversal::{Seeker, Stack, search};
+use super::vectorised::{greater, lesser};
 
 /// The candidates of every slot.
 pub(super) fn nearest_neighbours<const F: usize, const R: usize>(
@@ -50,11 +51,24 @@ impl Seeker for Nearest<'_> {
     fn admits(&self, lane: usize, slot: usize) -> bool {
         slot != self.first_slot + lane
     }
+    /// In each of K parts of the leaf is one point within the greatest of the parts' least distances: no reach need be longer.
+    #[inline(always)]
+    fn foresee(&mut self, lane: usize, first_slot: usize, squared_distances: &[f64; LANES]) {
+        if self.reach[lane] < f64::MAX {
+            return;
+        }
+        let mut least = [f64::MAX; K];
+        for (k, &squared) in squared_distances.iter().enumerate() {
+            let squared = if first_slot + k == self.first_slot + lane { f64::MAX } else { squared };
+            least[k % K] = lesser(least[k % K], squared);
+        }
+        self.reach[lane] = least.into_iter().fold(0.0, greater);
+    }
     #[inline(always)]
     fn take(&mut self, lane: usize, slot: usize, squared_distance: f64) {
         let (rows, own) = (self.rows, self.first_slot + lane);
         let candidates = &mut self.candidates[lane];
         candidates.insert(squared_distance, slot as u32, |a, b| tie_precedes(rows, own, a, b));
-        self.reach[lane] = candidates.squared[K - 1];
+        self.reach[lane] = lesser(self.reach[lane], candidates.squared[K - 1]);
     }
 }

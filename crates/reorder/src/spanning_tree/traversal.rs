@@ -14,6 +14,8 @@ pub(super) trait Seeker {
     fn wanting(&self, node: usize) -> u32;
     /// Whether the point at `slot` can be wanted by the lane.
     fn admits(&self, lane: usize, slot: usize) -> bool;
+    /// The squared distances of the points of a leaf from the lane, before any of them is shown.
+    fn foresee(&mut self, _lane: usize, _first_slot: usize, _squared_distances: &[f64; LANES]) {}
     /// A partner within reach.
     fn take(&mut self, lane: usize, slot: usize, squared_distance: f64);
 }
@@ -46,17 +48,40 @@ impl<const F: usize, const R: usize, S: Seeker> Task for Search<'_, F, R, S> {
     #[inline(always)]
     fn run<const FUSED: bool>(mut self) {
         let points = &self.tree.leaves[self.leaf];
-        self.descend::<FUSED>(points);
+        self.visit_own::<FUSED>(points);
+        self.visit_rest::<FUSED>(points);
         if self.chords.antipodes_identified {
-            self.descend::<FUSED>(&points.opposite());
+            self.stack.push((0, [0.0; LANES]));
+            self.visit_rest::<FUSED>(&points.opposite());
         }
     }
 }
 
 impl<const F: usize, const R: usize, S: Seeker> Search<'_, F, R, S> {
+    /// Goes straight down to the querying leaf itself, where the nearest points mostly are, and puts off what hangs beside the way:
+    /// the smallest subtree will come first.
     #[inline(always)]
-    fn descend<const FUSED: bool>(&mut self, points: &Leaf<F, R>) {
-        self.stack.push((0, [0.0; LANES]));
+    fn visit_own<const FUSED: bool>(&mut self, points: &Leaf<F, R>) {
+        let own = self.tree.node_of_leaf[self.leaf] as usize;
+        let mut node = 0;
+        while let Below::Nodes([left, right]) = self.tree.below(node) {
+            // Nodes are in preorder.
+            let (ahead, beside) = if own < right { (left, right) } else { (right, left) };
+            if self.seeker.wanting(beside) != 0 {
+                let bounds = self.chords.to_cell::<FUSED, F, R>(points, &self.tree.cells[beside]);
+                if within(&bounds, self.seeker.reach()) != 0 {
+                    self.stack.push((beside, bounds));
+                }
+            }
+            node = ahead;
+        }
+        self.seeker.refresh();
+        self.visit::<FUSED>(points, self.wanting(own, &[0.0; LANES]), self.leaf);
+    }
+
+    /// Visits what was put off.
+    #[inline(always)]
+    fn visit_rest<const FUSED: bool>(&mut self, points: &Leaf<F, R>) {
         while let Some((mut node, mut bounds)) = self.stack.pop() {
             while self.wanting(node, &bounds) != 0 {
                 match self.tree.below(node) {
@@ -98,6 +123,9 @@ impl<const F: usize, const R: usize, S: Seeker> Search<'_, F, R, S> {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
             let to_leaf = self.chords.to_leaf::<FUSED, F, R>(points, lane, others);
+            if R == 0 {
+                self.seeker.foresee(lane, leaf * LANES, &to_leaf.bound);
+            }
             let mut hits = vectorised::at_most::<FUSED>(&to_leaf.bound, self.seeker.reach()[lane]);
             while hits != 0 {
                 let k = hits.trailing_zeros() as usize;
