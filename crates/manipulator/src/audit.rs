@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::robot::{Limits, Robot};
-use crate::trajectory::JointTrajectory;
+use crate::trajectory::{JointPoint, JointTrajectory};
 
 /// Peak over limit, the greatest of all joints; at most 1 where the limit holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -22,7 +22,7 @@ pub struct MaxRatio {
 /// any grid.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Audit {
-    /// Whether every check below holds: ratios at most 1, margin not negative, times increase, rest at both ends.
+    /// Whether every check below holds: ratios at most 1, margin not negative, times increase, the start as it must be, rest at the end.
     pub limits_ok: bool,
     /// Peak over limit.
     pub max_ratio: MaxRatio,
@@ -30,7 +30,8 @@ pub struct Audit {
     pub position_margin: f64,
     /// Whether times are finite, start at 0 and strictly increase.
     pub times_increase: bool,
-    /// Whether velocity and acceleration are exactly zero at both ends.
+    /// Whether velocity and acceleration are exactly zero at both ends. For [`audit_from`]: whether the first point has exactly the
+    /// position, velocity and acceleration of the given state, and the last is at rest.
     pub starts_and_ends_at_rest: bool,
     /// Duration in s.
     pub duration_s: f64,
@@ -48,8 +49,18 @@ pub(crate) struct Peaks {
 
 /// Judges the trajectory that a controller would execute against the robot's limits. Numbers that are not finite fail every check.
 pub fn audit(robot: &Robot, trajectory: &JointTrajectory) -> Audit {
+    judge(robot, trajectory, None)
+}
+
+/// [`audit`] of a trajectory that takes over from a moving robot: in place of rest it must begin in exactly the state `from`, whose
+/// time does not count.
+pub fn audit_from(robot: &Robot, trajectory: &JointTrajectory, from: &JointPoint) -> Audit {
+    judge(robot, trajectory, Some(from))
+}
+
+fn judge(robot: &Robot, trajectory: &JointTrajectory, from: Option<&JointPoint>) -> Audit {
     if trajectory.joint_names == robot.chain.joint_names() {
-        return against(&robot.limits, trajectory);
+        return against_from(&robot.limits, trajectory, from);
     }
     // Judged joint by joint in order: under other names that would be somebody else's limits.
     Audit { duration_s: trajectory.duration_s(), points: trajectory.points.len(), ..Audit::failed() }
@@ -71,23 +82,23 @@ impl Audit {
 }
 
 pub(crate) fn against(limits: &Limits, trajectory: &JointTrajectory) -> Audit {
+    against_from(limits, trajectory, None)
+}
+
+pub(crate) fn against_from(limits: &Limits, trajectory: &JointTrajectory, from: Option<&JointPoint>) -> Audit {
     let points = &trajectory.points;
     let dof = limits.lower.len();
-    let complete = !points.is_empty()
-        && points.iter().all(|p| {
-            let values = p.positions.iter().chain(&p.velocities).chain(&p.accelerations);
-            [&p.positions, &p.velocities, &p.accelerations].iter().all(|v| v.len() == dof)
-                && values.chain([&p.time_s]).all(|x| x.is_finite())
-        });
-    let times_increase =
-        complete && points[0].time_s == 0.0 && points.windows(2).all(|pair| pair[1].time_s > pair[0].time_s);
+    let times_increase = trajectory.is_well_formed(dof);
     let mut audit =
         Audit { times_increase, duration_s: trajectory.duration_s(), points: points.len(), ..Audit::failed() };
     if !times_increase {
         return audit;
     }
-    let ends = [&points[0], &points[points.len() - 1]];
-    audit.starts_and_ends_at_rest = ends.iter().all(|p| p.velocities.iter().chain(&p.accelerations).all(|&x| x == 0.0));
+    let at_rest = |p: &JointPoint| p.velocities.iter().chain(&p.accelerations).all(|&x| x == 0.0);
+    let first = &points[0];
+    let begins =
+        from.map_or_else(|| at_rest(first), |from| JointPoint { time_s: first.time_s, ..from.clone() } == *first);
+    audit.starts_and_ends_at_rest = begins && at_rest(&points[points.len() - 1]);
     let mut ratios = [0.0_f64; 3];
     let mut margin = f64::INFINITY;
     for (j, &q) in points[0].positions.iter().enumerate() {

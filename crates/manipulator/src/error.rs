@@ -209,6 +209,14 @@ pub enum ManipulatorError {
         /// Most points there may be.
         most: usize,
     },
+    /// A trajectory cannot be left at a time outside of it.
+    #[error("the running trajectory lasts from 0 to {duration_s} s and cannot be left at {at_s} s")]
+    NotRunning {
+        /// The time asked for, in s.
+        at_s: f64,
+        /// Duration of the running trajectory, in s.
+        duration_s: f64,
+    },
     /// Slowing down did not make the trajectory legal; it is withheld.
     #[error(
         "the trajectory would break limits after every slowdown (velocity {velocity:.4}, acceleration {acceleration:.4}, jerk {jerk:.4} of the limit, position margin {position_margin:.2e}), so there is none"

@@ -25,10 +25,29 @@ pub struct Config {
     pub require_joint_state: bool,
     /// A joint state older than this, in s, no longer says where the robot stands.
     pub joint_state_max_age_s: f64,
+    /// How far ahead, in s, a trajectory for new poses takes over from the one that is being executed. Planning that takes longer is
+    /// done again with a longer lead.
+    pub handover_lead_s: f64,
+    /// How far a measured joint may be from where the trajectory under execution has it, in rad (or m). Farther away, the robot does
+    /// not execute it.
+    pub handover_tolerance_rad: f64,
+    /// What becomes of the trajectory under execution when what is asked for next is refused.
+    pub on_refusal: OnRefusal,
     /// Accuracy of the joint path.
     pub path: PathOptions,
     /// Publishing rate and scaling of limits.
     pub timing: TimingOptions,
+}
+
+/// What a robot under way does when new poses are refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OnRefusal {
+    /// Stop on the planned path as soon as the limits allow. New poses mean that the old ones are no longer wanted, also when
+    /// nothing can be done with the new ones.
+    Stop,
+    /// Go on to the end of the present trajectory.
+    Continue,
 }
 
 impl Default for Config {
@@ -41,6 +60,9 @@ impl Default for Config {
             approach: true,
             require_joint_state: true,
             joint_state_max_age_s: 1.0,
+            handover_lead_s: 1.0,
+            handover_tolerance_rad: 0.05,
+            on_refusal: OnRefusal::Stop,
             path: PathOptions::default(),
             timing: TimingOptions::default(),
         }
@@ -63,9 +85,13 @@ impl Config {
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(Refusal::Config(format!("metres_per_radian must be a positive number, not {length_m}")));
         }
-        let age_s = self.joint_state_max_age_s;
-        if age_s.is_nan() || age_s <= 0.0 {
-            return Err(Refusal::Config(format!("joint_state_max_age_s must be a positive number, not {age_s}")));
+        let positive = [
+            ("joint_state_max_age_s", self.joint_state_max_age_s),
+            ("handover_lead_s", self.handover_lead_s),
+            ("handover_tolerance_rad", self.handover_tolerance_rad),
+        ];
+        if let Some((name, value)) = positive.into_iter().find(|(_, value)| value.is_nan() || *value <= 0.0) {
+            return Err(Refusal::Config(format!("{name} must be a positive number, not {value}")));
         }
         let of_robot = |error: manipulator::ManipulatorError| Refusal::Config(error.to_string());
         self.path.check().map_err(of_robot)?;

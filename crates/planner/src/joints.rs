@@ -2,6 +2,7 @@
 
 use manipulator::Robot;
 
+use crate::motion::Motion;
 use crate::refusal::Refusal;
 
 /// A joint slower than this stands, in rad/s or m/s: above the noise of velocity estimates, below any motion on purpose.
@@ -46,22 +47,40 @@ impl MeasuredJoints {
         }
     }
 
+    /// Whether the robot was heard of within `allowed_s`.
+    ///
+    /// # Errors
+    /// [`Refusal::StaleJointState`].
+    pub(crate) fn fresh(&self, now_s: f64, allowed_s: f64) -> Result<(), Refusal> {
+        let age_s = now_s - self.at_s;
+        // Written so that an age that is no number is too old.
+        if age_s <= allowed_s { Ok(()) } else { Err(Refusal::StaleJointState { age_s, allowed_s }) }
+    }
+
     /// The positions of a robot that stands still and was heard of within `allowed_s`.
     ///
     /// # Errors
     /// [`Refusal::StaleJointState`], [`Refusal::Moving`].
     pub(crate) fn standing(&self, robot: &Robot, now_s: f64, allowed_s: f64) -> Result<Vec<f64>, Refusal> {
-        let age_s = now_s - self.at_s;
-        // Written so that an age that is no number is too old.
-        let fresh = age_s <= allowed_s;
-        if !fresh {
-            return Err(Refusal::StaleJointState { age_s, allowed_s });
-        }
+        self.fresh(now_s, allowed_s)?;
         let velocities = self.velocities.as_deref().unwrap_or_default();
         match velocities.iter().position(|velocity| velocity.abs() > STANDSTILL_PER_S) {
             Some(joint) => Err(Refusal::Moving { joint: name(robot, joint), velocity: velocities[joint] }),
             None => Ok(self.positions.clone()),
         }
+    }
+
+    /// The refusal that is due where a joint is farther than `tolerance` from where `motion` had it at the time of measuring. What was
+    /// measured before the motion began says nothing of it.
+    pub(crate) fn off(&self, robot: &Robot, motion: &Motion, tolerance: f64) -> Option<Refusal> {
+        let since_s = self.at_s - motion.starts_at_s;
+        if since_s < 0.0 {
+            return None;
+        }
+        let expected = &motion.trajectory.at(since_s)[0];
+        let by = |joint: usize| self.positions[joint] - expected[joint];
+        let joint = (0..expected.len()).find(|&joint| by(joint).abs() > tolerance)?;
+        Some(Refusal::OffTrajectory { joint: name(robot, joint), by: by(joint), tolerance })
     }
 
     /// The refusal that is due where the robot left the place from which it was planned.

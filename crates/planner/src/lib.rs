@@ -20,20 +20,24 @@
 //! ```
 
 mod config;
+mod exchange;
 mod joints;
 mod message;
+mod motion;
 mod pipeline;
 mod refusal;
 mod report;
 mod session;
 
-pub use config::Config;
+pub use config::{Config, OnRefusal};
+pub use exchange::{Counters, Input, Job, Outcome, Output, RawPose};
 pub use manipulator;
 pub use message::trajectory_message;
+pub use motion::{Handover, Motion};
 pub use pipeline::{Plan, Request, plan};
 pub use pose_bag;
 pub use refusal::Refusal;
 pub use reorder;
 pub use report::{PlanReport, Report};
 pub use se3_geom;
-pub use session::{Counters, Input, Job, Outcome, Output, RawPose, Session};
+pub use session::Session;

@@ -1,12 +1,16 @@
 //! Poses to trajectory, as one pure function.
 
 use manipulator::nalgebra::DVector;
-use manipulator::{Audit, JointTrajectory, ManipulatorError, Robot, TimedPath, audit, follow, rest_to_rest, time_path};
+use manipulator::{
+    Audit, JointTrajectory, ManipulatorError, Robot, TimedPath, audit, audit_from, connect, follow, rest_to_rest,
+    time_path,
+};
 use reorder::{Ordering, Topology, order_poses};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, SplineError, centripetal_knots};
 
 use crate::config::Config;
 use crate::joints::STANDSTILL;
+use crate::motion::Handover;
 use crate::refusal::Refusal;
 
 /// How much farther than the path tolerance the final trajectory may pass from an input pose: the tolerance bounds the joint
@@ -25,6 +29,9 @@ pub struct Request {
     /// The joint positions the robot stands at, in the robot's joint order. The trajectory then starts there; without it, at
     /// the first pose.
     pub start: Option<Vec<f64>>,
+    /// The trajectory that the robot executes, and when the new one takes over from it; in place of `start`. The new one then begins
+    /// in exactly the state of that time.
+    pub handover: Option<Handover>,
 }
 
 /// An ordered, interpolated, timed and audited motion.
@@ -34,7 +41,7 @@ pub struct Plan {
     pub ordering: Ordering,
     /// The C² curve through the distinct poses in order.
     pub spline: PoseSpline,
-    /// What the robot executes: quintic between points, at rest at both ends.
+    /// What the robot executes: quintic between points, at rest at the end, and at the start but for a hand-over.
     pub trajectory: JointTrajectory,
     /// When the tool is at each input pose, by input index, in s from the trajectory's start.
     pub pose_times_s: Vec<f64>,
@@ -80,6 +87,9 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
     if !request.frame_id.is_empty() && request.frame_id != *base {
         return Err(Refusal::Frame { given: request.frame_id.clone(), base: base.clone() });
     }
+    if request.handover.is_some() && !config.approach {
+        return Err(Refusal::Config("approach is off, so that no trajectory can take over from a running one".into()));
+    }
     let start = start_state(robot, request)?;
     let poses = &request.poses;
     let ordering = order_from(robot, config, poses, start.as_ref())?;
@@ -97,20 +107,25 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
     let path = follow(robot, &spline, start.as_ref(), &config.path).map_err(at_fault)?;
     let timed = time_path(robot, &path, &config.timing).map_err(at_fault)?;
     let (trajectory, approach_s) = match &start {
-        Some(start) if config.approach => with_approach(robot, config, start, &timed).map_err(at_fault)?,
+        Some(start) if config.approach => {
+            with_approach(robot, config, start, request.handover.as_ref(), &timed).map_err(at_fault)?
+        }
         Some(start) => (at_first_pose(robot, start, timed.trajectory.clone())?, 0.0),
         None => (timed.trajectory.clone(), 0.0),
     };
 
     let pose_times_s = times_by_input(&ordering, &distinct, &timed.knot_times_s, approach_s);
     let (pose_error_max_m, pose_error_max_rad) = accuracy(robot, config, poses, &trajectory, &pose_times_s)?;
-    let audit = passed_audit(robot, &trajectory)?;
+    let audit = passed_audit(robot, &trajectory, request.handover.as_ref())?;
     Ok(Plan { ordering, spline, trajectory, pose_times_s, audit, pose_error_max_m, pose_error_max_rad, approach_s })
 }
 
 fn start_state(robot: &Robot, request: &Request) -> Result<Option<DVector<f64>>, Refusal> {
-    let Some(start) = &request.start else { return Ok(None) };
-    let start = DVector::from_column_slice(start);
+    let start = match (&request.handover, &request.start) {
+        (Some(handover), _) => DVector::from_vec(handover.state().positions),
+        (None, Some(start)) => DVector::from_column_slice(start),
+        (None, None) => return Ok(None),
+    };
     robot.check_within_limits("the start state", &start).map_err(Refusal::StartState)?;
     Ok(Some(start))
 }
@@ -181,23 +196,21 @@ fn at_first_pose(robot: &Robot, start: &DVector<f64>, trajectory: JointTrajector
     }
 }
 
-/// The path's trajectory, led up to by a straight joint move from the start state.
+/// The path's trajectory, led up to by a straight joint move from the start state, or from the moving state of a hand-over.
 fn with_approach(
     robot: &Robot,
     config: &Config,
     start: &DVector<f64>,
+    handover: Option<&Handover>,
     timed: &TimedPath,
 ) -> Result<(JointTrajectory, f64), ManipulatorError> {
     let first = DVector::from_column_slice(&timed.trajectory.points[0].positions);
-    let mut whole = rest_to_rest(robot, start, &first, &config.timing)?;
-    let approach_s = whole.points[whole.points.len() - 1].time_s;
-    // Both pieces are at rest where they meet, so the joint point may stand once.
-    whole.points.pop();
-    whole.points.extend(timed.trajectory.points.iter().cloned().map(|mut point| {
-        point.time_s += approach_s;
-        point
-    }));
-    Ok((whole, approach_s))
+    let approach = match handover {
+        Some(running) => connect(robot, &running.trajectory, running.at_s, &first, &config.timing)?,
+        None => rest_to_rest(robot, start, &first, &config.timing)?,
+    };
+    let approach_s = approach.duration_s();
+    Ok((approach.switched(approach_s, &timed.trajectory), approach_s))
 }
 
 /// Duplicates share the time of the pose they were merged into; on a closed curve the first pose's time is its first passing.
@@ -217,8 +230,11 @@ fn times_by_input(ordering: &Ordering, distinct: &[usize], knot_times_s: &[f64],
 }
 
 /// The last gate before a robot.
-fn passed_audit(robot: &Robot, trajectory: &JointTrajectory) -> Result<Audit, Refusal> {
-    let audit = audit(robot, trajectory);
+fn passed_audit(robot: &Robot, trajectory: &JointTrajectory, handover: Option<&Handover>) -> Result<Audit, Refusal> {
+    let audit = match handover {
+        Some(handover) => audit_from(robot, trajectory, &handover.state()),
+        None => audit(robot, trajectory),
+    };
     if audit.limits_ok { Ok(audit) } else { Err(Refusal::Limits(Box::new(audit))) }
 }
 

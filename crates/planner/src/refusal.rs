@@ -56,6 +56,18 @@ pub enum Refusal {
         /// Its velocity in rad/s or m/s.
         velocity: f64,
     },
+    /// The robot does not execute the trajectory from which the new one was to take over.
+    #[error(
+        "{joint} is {by:.4} rad (or m) off the trajectory under execution, more than the tolerance of {tolerance}: nothing can take over from it"
+    )]
+    OffTrajectory {
+        /// Name of the joint.
+        joint: String,
+        /// How far off, in rad or m.
+        by: f64,
+        /// What the configuration allows, in rad or m.
+        tolerance: f64,
+    },
     /// The robot left the place from which its trajectory was planned.
     #[error("{joint} moved by {by:.4} rad (or m) while the trajectory was planned: plan again when the robot stands")]
     MovedMeanwhile {

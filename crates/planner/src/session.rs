@@ -5,110 +5,25 @@
 //! wait; older waiting ones are superseded, and what comes of the running job is discarded: a robot must not set out along poses
 //! when newer ones are known. The same poses again change nothing. What was cleared meanwhile is not published either.
 //!
-//! Where joint states arrive, a trajectory starts exactly where the robot stands; a robot that moves, that was not heard of for a
-//! while, or that moved while its trajectory was planned gets a refusal instead of a jump.
+//! Where joint states arrive, a trajectory starts exactly where the robot stands; a robot that was not heard of for a while, or that
+//! moved while its trajectory was planned, gets a refusal instead of a jump.
+//!
+//! The session remembers what it published and when that began. While the robot executes it, a new trajectory takes over from it a
+//! lead ahead, in exactly the state that the running one has there; planning that outlasts the lead is done again with a longer one,
+//! at last from the rest at the end. A refusal stops the robot on its planned path, unless the configuration lets it go on. A robot
+//! that moves otherwise than it was told is refused.
 
 use std::sync::Arc;
 
 use manipulator::Robot;
 use se3_geom::pose_from_xyzw;
 
-use crate::config::Config;
+use crate::config::{Config, OnRefusal};
+use crate::exchange::{Counters, Input, Job, Outcome, Output, RawPose};
 use crate::joints::MeasuredJoints;
-use crate::pipeline::{Plan, Request, plan};
+use crate::motion::{Motion, PUBLISHING_S};
+use crate::pipeline::{Plan, Request};
 use crate::refusal::Refusal;
-
-/// Something that happened.
-#[derive(Debug)]
-pub enum Input {
-    /// Unordered poses arrived.
-    Poses {
-        /// Frame they are in.
-        frame_id: String,
-        /// When they were taken, in ns since the epoch; passed through.
-        stamp_ns: i64,
-        /// `base_from_tool`, unchecked.
-        poses: Vec<RawPose>,
-    },
-    /// The robot's joints were measured, in any joint order; joints of other robots are ignored.
-    JointState {
-        /// Joint names.
-        names: Vec<String>,
-        /// Positions in rad (or m), one a name.
-        positions: Vec<f64>,
-        /// Velocities in rad/s (or m/s), one a name, or none at all.
-        velocities: Vec<f64>,
-    },
-    /// Plan the last poses again, from the present joint state.
-    Replan,
-    /// Forget poses and results.
-    Clear,
-    /// A job was run.
-    Finished(Box<Outcome>),
-}
-
-/// A pose as a message carries it, before anything was checked.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RawPose {
-    /// In m.
-    pub position: [f64; 3],
-    /// In the order x, y, z, w.
-    pub quaternion_xyzw: [f64; 4],
-}
-
-/// Something to do.
-#[derive(Debug)]
-pub enum Output {
-    /// Run this, off the receiving task, and bring back its outcome.
-    Run(Job),
-    /// Publish this outcome: a trajectory, or a refusal.
-    Publish(Box<Outcome>),
-    /// Answer to [`Input::Replan`] or [`Input::Clear`].
-    Reply {
-        /// Whether it was done.
-        success: bool,
-        /// One sentence.
-        message: String,
-    },
-    /// Withdraw what was published: it no longer holds.
-    Withdraw,
-    /// Something that a person should know; one sentence.
-    Warn(String),
-}
-
-/// A plan to be made.
-#[derive(Debug, Clone)]
-pub struct Job {
-    generation: u64,
-    robot: Arc<Robot>,
-    config: Arc<Config>,
-    request: Request,
-}
-
-/// A job that was run.
-#[derive(Debug)]
-pub struct Outcome {
-    generation: u64,
-    /// What was asked.
-    pub request: Request,
-    /// What came of it.
-    pub result: Result<Plan, Refusal>,
-}
-
-/// What happened so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counters {
-    /// Pose messages received.
-    pub received: u64,
-    /// Pose messages replaced by a newer one before they were planned.
-    pub superseded: u64,
-    /// Trajectories published.
-    pub planned: u64,
-    /// Refusals published.
-    pub refused: u64,
-    /// Outcomes dropped because poses were cleared or replaced meanwhile.
-    pub discarded: u64,
-}
 
 /// The state between messages.
 #[derive(Debug)]
@@ -121,25 +36,18 @@ pub struct Session {
     waiting: bool,
     generation: u64,
     counters: Counters,
-}
-
-impl Job {
-    /// The outcome of a job that was lost on the way, so that the session does not wait for it for ever.
-    pub fn lost(self, why: String) -> Box<Outcome> {
-        Box::new(Outcome { generation: self.generation, request: self.request, result: Err(Refusal::Internal(why)) })
-    }
-
-    /// Plans. Pure and possibly slow.
-    pub fn run(self) -> Box<Outcome> {
-        let result = plan(&self.robot, &self.config, &self.request);
-        Box::new(Outcome { generation: self.generation, request: self.request, result })
-    }
+    motion: Option<Motion>,
+    asked_at_s: f64,
+    lead_s: f64,
 }
 
 impl Session {
     /// A session that knows no poses and no joint state yet.
     pub fn new(robot: Robot, config: Config) -> Self {
         Self {
+            motion: None,
+            asked_at_s: 0.0,
+            lead_s: config.handover_lead_s,
             robot: Arc::new(robot),
             config: Arc::new(config),
             joints: None,
@@ -199,7 +107,7 @@ impl Session {
         });
         match checked.collect::<Result<Vec<_>, _>>() {
             Ok(poses) => {
-                let request = Request { frame_id, stamp_ns, poses, start: None };
+                let request = Request { frame_id, stamp_ns, poses, ..Request::default() };
                 let same = |last: &Request| last.frame_id == request.frame_id && last.poses == request.poses;
                 if self.running && !self.waiting && self.last.as_ref().is_some_and(same) {
                     // A publisher that repeats itself asks for nothing new, and must not keep its own plan from ending.
@@ -216,30 +124,65 @@ impl Session {
                 self.waiting = false;
                 self.generation += 1;
                 let request = Request { frame_id, stamp_ns, ..Request::default() };
-                vec![self.publish(request, Err(refusal))]
+                vec![self.refuse(now_s, request, refusal)]
             }
         }
     }
 
     fn request_plan(&mut self, now_s: f64) -> Vec<Output> {
+        self.lead_s = self.config.handover_lead_s;
+        self.run(now_s)
+    }
+
+    fn run(&mut self, now_s: f64) -> Vec<Output> {
         if self.running {
             self.waiting = true;
             return Vec::new();
         }
-        let Some(poses) = self.last.clone() else { return Vec::new() };
+        let Some(mut request) = self.last.clone() else { return Vec::new() };
         self.waiting = false;
-        match self.present_state(now_s) {
-            Ok(start) => {
+        match self.begin(now_s, &mut request) {
+            Ok(()) => {
                 self.running = true;
+                self.asked_at_s = now_s;
                 vec![Output::Run(Job {
                     generation: self.generation,
                     robot: Arc::clone(&self.robot),
                     config: Arc::clone(&self.config),
-                    request: Request { start, ..poses },
+                    request,
                 })]
             }
-            Err(refusal) => vec![self.publish(poses, Err(refusal))],
+            Err(refusal) => vec![self.refuse(now_s, request, refusal)],
         }
+    }
+
+    /// Where the trajectory of a request has to begin; a refusal where nothing reliable is known.
+    fn begin(&self, now_s: f64, request: &mut Request) -> Result<(), Refusal> {
+        match self.executing(now_s) {
+            // Without an approach nothing leads over from a moving state.
+            Some(motion) if self.config.approach => {
+                self.check_on_time(now_s)?;
+                request.handover = Some(motion.handover(now_s + self.lead_s));
+            }
+            _ => request.start = self.present_state(now_s)?,
+        }
+        Ok(())
+    }
+
+    /// What the robot was told to do and has not done yet, unless it is seen to do something else.
+    fn executing(&self, now_s: f64) -> Option<&Motion> {
+        let motion = self.motion.as_ref().filter(|motion| now_s < motion.ends_at_s())?;
+        self.off(motion).is_none().then_some(motion)
+    }
+
+    fn off(&self, motion: &Motion) -> Option<Refusal> {
+        self.joints.as_ref()?.off(&self.robot, motion, self.config.handover_tolerance_rad)
+    }
+
+    /// Whether the robot was heard of lately, if anything is heard of it.
+    fn check_on_time(&self, now_s: f64) -> Result<(), Refusal> {
+        let Some(joints) = &self.joints else { return Ok(()) };
+        joints.fresh(now_s, self.config.joint_state_max_age_s)
     }
 
     /// Where the robot stands, if anything says so; a refusal where that cannot be relied on.
@@ -251,12 +194,20 @@ impl Session {
         joints.standing(&self.robot, now_s, self.config.joint_state_max_age_s).map(Some)
     }
 
-    fn publish(&mut self, request: Request, result: Result<Plan, Refusal>) -> Output {
-        match result {
-            Ok(_) => self.counters.planned += 1,
-            Err(_) => self.counters.refused += 1,
+    /// Publishes a refusal, and stops a robot that is under way if that is what the configuration asks for.
+    fn refuse(&mut self, now_s: f64, request: Request, refusal: Refusal) -> Output {
+        self.counters.refused += 1;
+        let stop = match self.executing(now_s) {
+            Some(motion) if self.config.on_refusal == OnRefusal::Stop => {
+                // The motion was audited under these very limits: where nothing better is found, its stop is its remainder.
+                motion.stopped(&self.robot, now_s, &self.config.timing).ok().flatten()
+            }
+            _ => None,
+        };
+        if stop.is_some() {
+            self.motion.clone_from(&stop);
         }
-        Output::Publish(Box::new(Outcome { generation: self.generation, request, result }))
+        Output::Publish(Box::new(Outcome { generation: self.generation, request, result: Err(refusal), motion: stop }))
     }
 
     fn finished(&mut self, now_s: f64, outcome: Box<Outcome>) -> Vec<Output> {
@@ -264,16 +215,20 @@ impl Session {
         let mut outputs = Vec::new();
         if outcome.generation == self.generation {
             let Outcome { request, result, .. } = *outcome;
-            // The robot must still stand where the trajectory begins, whatever was known when planning started.
-            let result = result.and_then(|plan| {
-                let begin = &plan.trajectory.points[0].positions;
-                self.present_state(now_s)?;
-                match self.joints.as_ref().and_then(|joints| joints.moved_from(&self.robot, begin)) {
-                    Some(moved) => Err(moved),
-                    None => Ok(plan),
+            match result.and_then(|plan| Ok((self.take_over(now_s, &request, &plan)?, plan))) {
+                Ok((Some(motion), plan)) => {
+                    self.counters.planned += 1;
+                    self.motion = Some(motion.clone());
+                    let (generation, motion) = (self.generation, Some(motion));
+                    outputs.push(Output::Publish(Box::new(Outcome { generation, request, result: Ok(plan), motion })));
                 }
-            });
-            outputs.push(self.publish(request, result));
+                Ok((None, _)) => {
+                    self.counters.late += 1;
+                    self.lead_s = self.lead_s.max(LEAD_PER_PLANNING_TIME * (now_s - self.asked_at_s) + PUBLISHING_S);
+                    return self.run(now_s);
+                }
+                Err(refusal) => outputs.push(self.refuse(now_s, request, refusal)),
+            }
         } else {
             self.counters.discarded += 1;
         }
@@ -282,7 +237,36 @@ impl Session {
         }
         outputs
     }
+
+    /// What to execute of a plan that was finished at `now_s`; `None` where it is too late to take over.
+    fn take_over(&self, now_s: f64, request: &Request, plan: &Plan) -> Result<Option<Motion>, Refusal> {
+        let (Some(handover), Some(running)) = (&request.handover, &self.motion) else {
+            return self.set_out(now_s, plan).map(Some);
+        };
+        self.check_on_time(now_s)?;
+        if let Some(refusal) = self.off(running) {
+            return Err(refusal);
+        }
+        if now_s >= running.ends_at_s() {
+            return Ok(handover.is_at_rest().then(|| Motion::from_rest(plan.trajectory.clone(), now_s)));
+        }
+        let in_time = now_s + PUBLISHING_S <= running.starts_at_s + handover.at_s;
+        Ok(in_time.then(|| running.taken_over(now_s, handover.at_s, &plan.trajectory)))
+    }
+
+    /// A plan from rest: the robot must still stand where it begins, whatever was known when planning started.
+    fn set_out(&self, now_s: f64, plan: &Plan) -> Result<Motion, Refusal> {
+        self.present_state(now_s)?;
+        let begin = &plan.trajectory.points[0].positions;
+        match self.joints.as_ref().and_then(|joints| joints.moved_from(&self.robot, begin)) {
+            Some(moved) => Err(moved),
+            None => Ok(Motion::from_rest(plan.trajectory.clone(), now_s)),
+        }
+    }
 }
+
+/// The lead of the next attempt as a multiple of what the last took to plan.
+const LEAD_PER_PLANNING_TIME: f64 = 1.5;
 
 fn reply(success: bool, message: &str) -> Output {
     Output::Reply { success, message: message.to_owned() }

@@ -33,9 +33,9 @@ fn robot() -> Robot {
 fn request(recording: &Recording, start: Option<&[f64]>) -> Request {
     Request {
         frame_id: recording.frame_id.clone(),
-        stamp_ns: 0,
         poses: recording.poses.clone(),
         start: start.map(<[f64]>::to_vec),
+        ..Request::default()
     }
 }
 

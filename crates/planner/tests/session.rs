@@ -170,11 +170,12 @@ fn replan_starts_from_the_present_joint_state() {
     let mut named: Vec<_> = names.iter().map(String::as_str).zip(HOME).chain([("gripper", 0.3)]).collect();
     named.reverse();
     let (names, positions): (Vec<_>, Vec<_>) = named.into_iter().unzip();
-    assert!(session.handle(NOW_S, joint_state(&names, &positions)).is_empty());
-    let outputs = session.handle(NOW_S, Input::Replan);
+    let later_s = NOW_S + 60.0; // the first trajectory is over
+    assert!(session.handle(later_s, joint_state(&names, &positions)).is_empty());
+    let outputs = session.handle(later_s, Input::Replan);
     assert_eq!(kinds(&outputs), ["run", "reply true"]);
     let Some(Output::Run(job)) = outputs.into_iter().next() else { panic!() };
-    let outcome = only_outcome(session.handle(NOW_S, Input::Finished(job.run())));
+    let outcome = only_outcome(session.handle(later_s, Input::Finished(job.run())));
     assert_eq!(outcome.result.unwrap().trajectory.points[0].positions, HOME);
 }
 

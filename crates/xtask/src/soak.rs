@@ -12,6 +12,8 @@ use crate::failure::{Failure, Outcome};
 pub(crate) enum Soak {
     /// Random curves, shuffled, planned and judged
     Plans,
+    /// Random curves that arrive while the arm executes others: so many hand-overs on each arm
+    Handovers,
     /// Random smooth curves, sampled, shuffled and ordered: success by density, wrong orders by verdict
     Orders,
     /// Random coordinates, ordered: the number is how many seconds
@@ -23,6 +25,7 @@ pub(crate) enum Soak {
 pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
     match name {
         Soak::Plans => run_test(layout, "planner", "random_plans", amount),
+        Soak::Handovers => run_test(layout, "planner", "handover", amount),
         Soak::Orders => run_test(layout, "reorder", "random_orders", amount),
         Soak::FuzzOrders => fuzz(layout, "orders", amount),
         Soak::FuzzTables => fuzz(layout, "tables", amount),
