@@ -6,12 +6,18 @@ use nalgebra::DVector;
 use se3_geom::Pose;
 
 use crate::error::{ManipulatorError, Result};
-use crate::follow::is_new;
 use crate::ik::{IkOptions, PoseError, descend, nearest_turns};
 use crate::robot::Robot;
 
 /// Seeds spread over the joint ranges. A six-joint arm has at most 16 branches, the UR5e 8; a test below counts how many are found.
-const SEEDS: usize = 96;
+const SEEDS: usize = 128;
+/// A descent that has not arrived after so many steps hardly ever does.
+const OPTIONS: IkOptions = IkOptions { tolerance_m: 1e-9, tolerance_rad: 1e-9, max_iterations: 30 };
+
+/// Branches come nearer to each other than this only where they meet, at a singularity.
+const SAME_BRANCH: f64 = 1e-3;
+/// Along the self-motion of a redundant arm there are as many configurations as one likes; these, in rad or m apart, suffice.
+const SAME_SELF_MOTION: f64 = 0.2;
 
 /// Configurations at `target` within the limits, each the one of its whole-turn copies that is nearest to `reference`, nearest first.
 pub(crate) fn first_configurations(
@@ -23,21 +29,24 @@ pub(crate) fn first_configurations(
 }
 
 fn from_seeds(robot: &Robot, target: &Pose, reference: &DVector<f64>, seeds: usize) -> Result<Vec<DVector<f64>>> {
+    let apart = if robot.chain.dof() > 6 { SAME_SELF_MOTION } else { SAME_BRANCH };
     let mut found: Vec<DVector<f64>> = Vec::new();
     let mut nearest_miss: Option<PoseError> = None;
     let mut out_of_limits: Option<DVector<f64>> = None;
     for index in 0..=seeds {
         let seed = if index == 0 { reference.clone() } else { spread_seed(robot, index) };
-        match descend(&robot.chain, target, &seed, &IkOptions::default(), None) {
+        match descend(&robot.chain, target, &seed, &OPTIONS, None) {
             Ok(q) => {
                 let q = nearest_turns(robot, &q, reference);
                 if robot.limits.first_violation(&q).is_some() {
                     out_of_limits = out_of_limits.or(Some(q));
-                } else if is_new(&found, &q) {
+                } else if found.iter().all(|known| (known - &q).amax() > apart) {
                     found.push(q);
                 }
             }
-            Err(left) if nearest_miss.is_none_or(|miss| size(&left) < size(&miss)) => nearest_miss = Some(left),
+            Err(miss) if nearest_miss.is_none_or(|least| size(&miss.error) < size(&least)) => {
+                nearest_miss = Some(miss.error);
+            }
             Err(_) => {}
         }
     }
@@ -57,7 +66,7 @@ fn from_seeds(robot: &Robot, target: &Pose, reference: &DVector<f64>, seeds: usi
         });
     }
     let left = nearest_miss.unwrap_or(PoseError { position_m: f64::NAN, rotation_rad: f64::NAN });
-    Err(ManipulatorError::Unreachable {
+    Err(ManipulatorError::UnreachableBetween {
         pose: 0,
         position_error_m: left.position_m,
         rotation_error_rad: left.rotation_rad,
@@ -65,13 +74,13 @@ fn from_seeds(robot: &Robot, target: &Pose, reference: &DVector<f64>, seeds: usi
 }
 
 /// A metre counts as much as a radian.
-fn size(error: &PoseError) -> f64 {
+pub(crate) fn size(error: &PoseError) -> f64 {
     error.position_m.hypot(error.rotation_rad)
 }
 
 /// Point `index` of the Halton sequence, stretched over one turn about the middle of each joint's range, or over the range itself
 /// where that is shorter.
-fn spread_seed(robot: &Robot, index: usize) -> DVector<f64> {
+pub(crate) fn spread_seed(robot: &Robot, index: usize) -> DVector<f64> {
     const PRIMES: [usize; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
     DVector::from_fn(robot.chain.dof(), |joint, _| {
         let (mut fraction, mut weight, mut left) = (0.0, 1.0, index);

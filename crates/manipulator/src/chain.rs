@@ -1,7 +1,7 @@
 //! Forward kinematics and Jacobian of a serial chain as a product of exponentials.
 
-use nalgebra::{DVector, Matrix6xX, Vector6};
-use se3_geom::{LieGroup, Pose, Se3Group, Twist};
+use nalgebra::{DVector, Matrix6xX, Quaternion, UnitQuaternion, Vector6};
+use se3_geom::{Pose, Twist};
 
 use crate::error::{ManipulatorError, Result};
 
@@ -70,10 +70,13 @@ impl Chain {
     }
 
     /// `base_from_tool` at configuration `q` of shape (dof).
+    ///
+    /// # Panics
+    /// If `q` has fewer than dof values.
     pub fn forward(&self, q: &DVector<f64>) -> Pose {
         let mut pose = self.home;
-        for (screw, &angle) in self.screws.iter().zip(q.iter()) {
-            pose *= Se3Group::exp(*screw * angle);
+        for joint in 0..self.dof() {
+            pose *= self.joint_motion(joint, q[joint]);
         }
         // Six products of unit quaternions drift by some 1e-16; what leaves here has unit norm.
         pose.rotation.renormalize();
@@ -88,15 +91,63 @@ impl Chain {
     /// If `q` has fewer than dof values.
     pub fn body_jacobian(&self, q: &DVector<f64>) -> Matrix6xX<f64> {
         let mut jacobian = Matrix6xX::zeros(self.dof());
-        let mut tool_from_link = Pose::identity();
+        self.forward_with_jacobian(q, &mut jacobian);
+        jacobian
+    }
+
+    /// [`Self::forward`] and [`Self::body_jacobian`] in one pass, without allocation.
+    pub(crate) fn forward_with_jacobian(&self, q: &DVector<f64>, jacobian: &mut Matrix6xX<f64>) -> Pose {
+        // exp(Bᵢ₊₁qᵢ₊₁)⋯exp(Bₙqₙ)
+        let mut beyond = Pose::identity();
         for i in (0..self.dof()).rev() {
             let Twist { linear, angular } = self.screws[i];
-            let turned = tool_from_link.rotation * angular;
-            let carried = tool_from_link.rotation * linear + tool_from_link.translation.vector.cross(&turned);
-            jacobian.set_column(i, &Twist::new(carried, turned).to_vector());
-            tool_from_link *= Se3Group::exp(self.screws[i] * -q[i]);
+            let back = beyond.rotation.inverse();
+            let carried = Twist::new(back * (linear + angular.cross(&beyond.translation.vector)), back * angular);
+            jacobian.set_column(i, &carried.to_vector());
+            beyond = self.joint_motion(i, q[i]) * beyond;
         }
-        jacobian
+        let mut pose = self.home * beyond;
+        pose.rotation.renormalize();
+        pose
+    }
+
+    /// exp(Bᵢq). Axes have unit length, so that one sine and one cosine suffice (Lynch & Park, eq. 3.88).
+    fn joint_motion(&self, joint: usize, q: f64) -> Pose {
+        let Twist { linear, angular } = self.screws[joint];
+        if !self.rotary[joint] {
+            return Pose::from_parts((linear * q).into(), UnitQuaternion::identity());
+        }
+        let (half_sine, half_cosine) = (0.5 * q).sin_cos();
+        let (sine, versine) = (2.0 * half_sine * half_cosine, 2.0 * half_sine * half_sine);
+        let along = angular * (angular.dot(&linear) * (q - sine));
+        let translation = linear * sine + angular.cross(&linear) * versine + along;
+        let rotation = Quaternion::from_parts(half_cosine, angular * half_sine);
+        Pose::from_parts(translation.into(), UnitQuaternion::new_unchecked(rotation))
+    }
+
+    /// For every joint the greatest length that a unit of its motion moves the tool's origin by, in m (1 for a sliding joint), with
+    /// the sliding joints out by at most `travel`.
+    ///
+    /// From axis to axis the links keep their lengths whatever the joints do: the sum of those lengths up to the tool bounds the
+    /// tool's distance from the axis.
+    pub(crate) fn reach_bounds(&self, travel: &DVector<f64>) -> DVector<f64> {
+        let mut bounds = DVector::zeros(self.dof());
+        let mut length = 0.0;
+        let mut point = nalgebra::Vector3::zeros();
+        for i in (0..self.dof()).rev() {
+            let Twist { linear, angular } = self.screws[i];
+            if self.rotary[i] {
+                let on_axis = angular.cross(&linear);
+                let nearest = on_axis + angular * angular.dot(&(point - on_axis));
+                length += (point - nearest).norm();
+                point = nearest;
+                bounds[i] = length;
+            } else {
+                length += travel[i];
+                bounds[i] = 1.0;
+            }
+        }
+        bounds
     }
 
     /// J̇·q̇, the part of the tool's body acceleration V̇ = J·q̈ + J̇·q̇ that the joint rates alone make.

@@ -1,5 +1,7 @@
 //! Everything that can go wrong between a robot description and a legal trajectory.
 
+use crate::reach::OutOfReach;
+
 /// Why there is no robot, no joint path or no trajectory. Pose indices count from 0 along the curve.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ManipulatorError {
@@ -119,11 +121,14 @@ pub enum ManipulatorError {
         /// Angle left.
         rotation_error_rad: f64,
     },
-    /// The arm cannot reach a pose of the curve.
+    /// The arm cannot reach some poses of the curve.
+    #[error("{0}")]
+    Unreachable(OutOfReach),
+    /// Between two poses that the arm can take the curve leads out of its reach.
     #[error(
-        "pose {pose} is out of reach: the nearest tool pose found is {position_error_m:.4} m and {rotation_error_rad:.4} rad away"
+        "on the way to pose {pose} the curve leads out of reach: the nearest tool pose found is {position_error_m:.4} m and {rotation_error_rad:.4} rad away"
     )]
-    Unreachable {
+    UnreachableBetween {
         /// Index of the pose.
         pose: usize,
         /// Distance left.
@@ -166,6 +171,18 @@ pub enum ManipulatorError {
         pose: usize,
         /// Deviation of the midpoint that refinement did not remove.
         jump_rad: f64,
+    },
+    /// After a closed curve the arm stands otherwise than before it.
+    #[error(
+        "the arm comes back from the closed curve in another configuration: joint {joint:?} is at {to:.4} and began at {from:.4}, so that a second lap would begin with a jump"
+    )]
+    NotCyclic {
+        /// The joint that is off by most.
+        joint: String,
+        /// Its position at the first pose, in rad or m.
+        from: f64,
+        /// Its position one lap later.
+        to: f64,
     },
     /// The joint spline does not come within tolerance of the curve.
     #[error(
@@ -239,12 +256,26 @@ impl ManipulatorError {
     /// Index, along the curve, of the pose that the error is about.
     pub fn pose(&self) -> Option<usize> {
         match self {
-            Self::Unreachable { pose, .. }
+            Self::Unreachable(OutOfReach { misses, .. }) => misses.first().map(|miss| miss.pose),
+            Self::UnreachableBetween { pose, .. }
             | Self::JointLimit { pose, .. }
             | Self::Singular { pose, .. }
             | Self::Jump { pose, .. }
             | Self::PathTolerance { pose, .. } => Some(*pose),
             _ => None,
         }
+    }
+
+    /// The same about another pose.
+    pub(crate) fn at_pose(mut self, other: usize) -> Self {
+        match &mut self {
+            Self::UnreachableBetween { pose, .. }
+            | Self::JointLimit { pose, .. }
+            | Self::Singular { pose, .. }
+            | Self::Jump { pose, .. }
+            | Self::PathTolerance { pose, .. } => *pose = other,
+            _ => {}
+        }
+        self
     }
 }

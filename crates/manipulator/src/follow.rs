@@ -1,16 +1,21 @@
 //! From a curve of tool poses to a path of the joints.
 
 use nalgebra::DVector;
-use se3_geom::{Pose, PoseSpline};
+use se3_geom::PoseSpline;
 use serde::Deserialize;
 
 use crate::branches::first_configurations;
 use crate::continuation::{Sample, Stopped, Tracker};
 use crate::error::{ManipulatorError, Result};
-use crate::ik::{IkOptions, PoseError, descend};
 use crate::joint_path::JointPath;
-use crate::quintic_spline::{EndDerivatives, QuinticSpline};
+use crate::layers::{Layers, Route, SAME};
+use crate::posture::{separation, turns_freely};
+use crate::posture_spline::posture_through;
+use crate::reach::out_of_reach;
+use crate::relaxation::relax;
 use crate::robot::Robot;
+use crate::stations::{Station, stations};
+use crate::tolerance::spline_within_tolerance;
 
 /// How closely the joints follow the curve.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -55,21 +60,31 @@ impl PathOptions {
     }
 }
 
-/// Rounds of halving samples until the joint spline is within tolerance.
-const MAX_REFINEMENTS: usize = 12;
-/// The wanted bound on the ratio of neighbouring sample spacings: a spline through very uneven samples swings.
-const MAX_SPACING_RATIO: f64 = 4.01;
+/// Routes that are tried before an arm counts as unable to follow a curve.
+const MAX_ROUTES: usize = 48;
+/// Starts from which a redundant arm that found no route is led with least motion from sample to sample.
+const LEAST_MOTION_STARTS: usize = 8;
+/// Nearer than this to the first configuration, in rad or m, the robot stands there already.
+const STANDS_THERE: f64 = 1e-3;
 
 /// The joint path that keeps the tool on `curve` (poses `base_from_tool`).
 ///
-/// Every configuration found for the first pose (several elbows, wrists, whole turns) is followed by continuation along the curve; of
-/// those that reach the end the one with the shortest time at the velocity limits is taken, the way from the
-/// reference to the first pose included. The reference is `start` where given, else the robot's preferred configuration.
-/// At the ends the path has the first and second derivatives that the curve's twist and acceleration ask for.
+/// The way is chosen over the whole curve: at stations along it the arm's configurations (elbows, wrists, and samples of the self-motion
+/// where it has more than six joints) are found and joined, and dynamic programming takes the route with the least motion at the
+/// velocity limits that stays away from position limits and singularities, the approach from the reference included. The
+/// reference is `start` where given, else the robot's preferred configuration. A route that turns out not to be
+/// continuous is taken out and the next one tried.
+///
+/// What self-motion is left is made smooth (least energy) and becomes a posture along the curve, a C⁴ function; the arm takes at each
+/// parameter the configuration nearest to it, which is a smooth function again. Joints that turn freely get whole turns that
+/// suit the whole path. At its ends the path has the first and second derivatives that the curve's twist and acceleration ask for.
+///
+/// On a closed curve the joints end where they began with the same rates, joints that turn freely perhaps by whole turns apart.
 ///
 /// # Errors
-/// That of the attempt that came farthest: [`ManipulatorError::Unreachable`], [`ManipulatorError::JointLimit`],
-/// [`ManipulatorError::Singular`], [`ManipulatorError::Jump`] or [`ManipulatorError::PathTolerance`], with the index of the pose.
+/// [`ManipulatorError::Unreachable`] where some poses are out of reach; else the reason of the attempt that came farthest:
+/// [`ManipulatorError::UnreachableBetween`], [`ManipulatorError::JointLimit`], [`ManipulatorError::Singular`], [`ManipulatorError::Jump`],
+/// [`ManipulatorError::PathTolerance`] or [`ManipulatorError::NotCyclic`], with the index of the pose.
 pub fn follow(
     robot: &Robot,
     curve: &PoseSpline,
@@ -79,155 +94,147 @@ pub fn follow(
     options.check()?;
     let reference = start.unwrap_or(&robot.preferred);
     robot.check_configuration("the start configuration", reference)?;
-    let tracker = Tracker { robot, curve, least_singular_value: options.least_singular_value };
-    let first = curve.pose(curve.domain().0);
-    let mut open = first_configurations(robot, &first, reference)?;
-    open.truncate(options.max_branches);
-    let mut followed: Vec<(f64, Vec<Sample>)> = Vec::new();
-    let mut farthest: Option<Stopped> = None;
-    let mut next = 0;
-    while next < open.len() {
-        match tracker.track(&open[next]) {
-            Ok(samples) => followed.push((cost(robot, reference, &samples), samples)),
-            Err(stopped) => {
-                let turned = turned_away_from_limit(robot, &open[next], &stopped);
-                if let Some(q) = turned.filter(|q| open.len() < 2 * options.max_branches && is_new(&open, q)) {
-                    open.push(q);
-                }
-                if farthest.as_ref().is_none_or(|f| stopped.parameter > f.parameter) {
-                    farthest = Some(stopped);
-                }
-            }
-        }
-        next += 1;
-    }
-    followed.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut first_error = None;
-    for (_, samples) in followed {
-        match spline_within_tolerance(&tracker, samples, options) {
-            Ok(path) => return Ok(path),
-            Err(error) => first_error = first_error.or(Some(error)),
-        }
-    }
-    Err(match (first_error, farthest) {
-        (Some(error), _) => error,
-        (None, Some(stopped)) => named(&tracker, stopped),
-        // No configuration was found at the first pose, and that is reported by `first_configurations`.
-        (None, None) => ManipulatorError::NonFinite { what: "the curve" },
+    let tracker = Tracker { robot, curve, least_singular_value: options.least_singular_value, posture: None };
+    let request = Request { tracker, stations: stations(curve), reference, options };
+    request.path().map_err(|stopped| match out_of_reach(robot, curve, reference) {
+        Some(misses) => ManipulatorError::Unreachable(misses),
+        None => stopped.error.at_pose(stopped.pose),
     })
 }
 
-/// Time that approach and path take at the joints' velocity limits, in s: a lower bound of the true duration.
-fn cost(robot: &Robot, reference: &DVector<f64>, samples: &[Sample]) -> f64 {
-    let time = |from: &DVector<f64>, to: &DVector<f64>| (to - from).component_div(&robot.limits.velocity).amax();
-    time(reference, &samples[0].q) + samples.windows(2).map(|pair| time(&pair[0].q, &pair[1].q)).sum::<f64>()
+struct Request<'a> {
+    tracker: Tracker<'a>,
+    stations: Vec<Station>,
+    reference: &'a DVector<f64>,
+    options: &'a PathOptions,
 }
 
-/// The same arm pose with the joint that ran into its limit turned a whole turn back, if its limits allow.
-fn turned_away_from_limit(robot: &Robot, q: &DVector<f64>, stopped: &Stopped) -> Option<DVector<f64>> {
-    let ManipulatorError::JointLimit { joint, value, upper, .. } = &stopped.error else { return None };
-    let index = robot.chain.joint_names().iter().position(|name| name == joint)?;
-    let mut turned = q.clone();
-    turned[index] += if value > upper { -std::f64::consts::TAU } else { std::f64::consts::TAU };
-    (robot.chain.is_rotary(index) && robot.limits.first_violation(&turned).is_none()).then_some(turned)
-}
-
-/// Branches come nearer to each other than this only where they meet, at a singularity.
-const SAME_BRANCH: f64 = 1e-3;
-
-pub(crate) fn is_new(known: &[DVector<f64>], q: &DVector<f64>) -> bool {
-    known.iter().all(|k| (k - q).amax() > SAME_BRANCH)
-}
-
-/// An error on the way to a pose, made more telling: if that very pose is out of reach, by how much.
-fn named(tracker: &Tracker<'_>, stopped: Stopped) -> ManipulatorError {
-    let Stopped { error, last, pose, .. } = stopped;
-    let target = tracker.curve.pose(tracker.curve.knots()[pose]);
-    match (&error, descend(&tracker.robot.chain, &target, &last, &IkOptions::default(), None)) {
-        (ManipulatorError::JointLimit { .. }, _) | (_, Ok(_)) => error,
-        (_, Err(left)) => ManipulatorError::Unreachable {
-            pose,
-            position_error_m: left.position_m,
-            rotation_error_rad: left.rotation_rad,
-        },
-    }
-}
-
-/// Splines the samples and halves their spacing wherever the tool leaves the curve in between.
-fn spline_within_tolerance(
-    tracker: &Tracker<'_>,
-    mut samples: Vec<Sample>,
-    options: &PathOptions,
-) -> Result<JointPath> {
-    let mut worst = (0.0, PoseError { position_m: 0.0, rotation_rad: 0.0 });
-    for _ in 0..=MAX_REFINEMENTS {
-        let spline = through(tracker, &samples)?;
-        let mut too_far: Vec<bool> = Vec::with_capacity(samples.len() - 1);
-        worst.1 = PoseError { position_m: 0.0, rotation_rad: 0.0 };
-        for (i, pair) in samples.windows(2).enumerate() {
-            let h = pair[1].s - pair[0].s;
-            let mut good = true;
-            for local in [0.25 * h, 0.5 * h, 0.75 * h] {
-                let [q, ..] = spline.in_segment(i, local);
-                let error = off_curve(tracker, &q, &tracker.curve.pose(pair[0].s + local));
-                good &= error.within(options.tolerance_m, options.tolerance_rad);
-                good &= tracker.robot.limits.first_violation(&q).is_none();
-                if error.position_m > worst.1.position_m {
-                    worst = (pair[0].s + local, error);
+impl Request<'_> {
+    fn path(&self) -> std::result::Result<JointPath, Stopped> {
+        let (tracker, robot) = (&self.tracker, self.tracker.robot);
+        let begin = self.stations[0].s;
+        let mut first = first_configurations(robot, &tracker.curve.pose(begin), self.reference)
+            .map_err(|error| tracker.stopped(begin, error))?;
+        let redundant = robot.chain.dof() > 6;
+        if !redundant {
+            first.truncate(self.options.max_branches);
+        }
+        let mut stops = Vec::new();
+        let mut layers = Layers::build(tracker, &self.stations, first, self.reference, &mut stops);
+        let one_way = layers.cheapest_open(robot);
+        for _ in 0..MAX_ROUTES {
+            let Some(route) = layers.cheapest(robot) else { break };
+            match self.along(&route, redundant) {
+                Ok(path) => return Ok(path),
+                Err(NoPath::Stopped(stopped)) => {
+                    let station = self.stations.partition_point(|station| station.s <= stopped.parameter);
+                    layers.cut(&route, station.saturating_sub(1));
+                    stops.push(stopped);
+                }
+                Err(NoPath::WoundUp(stopped)) => {
+                    layers.cut_start(&route);
+                    stops.push(stopped);
                 }
             }
-            too_far.push(!good);
         }
-        if !too_far.contains(&true) {
-            return Ok(JointPath::with_poses_at(spline, tracker.curve.knots().to_vec()));
+        if redundant && !tracker.curve.is_closed() {
+            for q in layers.first_by_approach().into_iter().take(LEAST_MOTION_STARTS) {
+                match self.through(tracker, tracker.track(q)) {
+                    Ok(path) => return Ok(path),
+                    Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => stops.push(stopped),
+                }
+            }
         }
-        samples = refine(tracker, &spline, &samples, too_far)?;
+        if let Some(route) = one_way.filter(|_| tracker.curve.is_closed()) {
+            stops.extend(self.not_cyclic(&route));
+        }
+        let farthest = stops.into_iter().max_by(|a, b| a.parameter.total_cmp(&b.parameter));
+        // Without any configuration at the first pose there was an error before.
+        Err(farthest.unwrap_or_else(|| tracker.stopped(begin, ManipulatorError::NonFinite { what: "the curve" })))
     }
-    Err(ManipulatorError::PathTolerance {
-        pose: tracker.pose_after(worst.0),
-        position_error_m: worst.1.position_m,
-        rotation_error_rad: worst.1.rotation_rad,
-    })
+
+    /// The path along a route.
+    fn along(&self, route: &Route, redundant: bool) -> std::result::Result<JointPath, NoPath> {
+        let mut tracker = self.tracker.clone();
+        let mut configurations = route.configurations.clone();
+        if redundant {
+            let hold_first = (&configurations[0] - self.reference).amax() < STANDS_THERE;
+            relax(&tracker, &self.stations, &mut configurations, hold_first);
+            tracker.posture = posture_through(&tracker, &self.stations, &configurations);
+        }
+        let samples = tracker.track(&configurations[0]);
+        self.through(&tracker, samples)
+    }
+
+    fn through(
+        &self,
+        tracker: &Tracker<'_>,
+        samples: std::result::Result<Vec<Sample>, Stopped>,
+    ) -> std::result::Result<JointPath, NoPath> {
+        let mut samples = samples.map_err(NoPath::Stopped)?;
+        let turns = whole_turns(tracker, &samples, self.reference).map_err(NoPath::WoundUp)?;
+        let mut tracker = tracker.clone();
+        if turns.amax() > 0.0 {
+            samples.iter_mut().for_each(|sample| sample.q += &turns);
+            tracker.posture = tracker.posture.map(|posture| posture.moved_by(&turns));
+        }
+        spline_within_tolerance(&tracker, samples, self.options).map_err(NoPath::Stopped)
+    }
+
+    /// The arm comes back in another configuration than it set out in.
+    fn not_cyclic(&self, route: &Route) -> Option<Stopped> {
+        let robot = self.tracker.robot;
+        let (first, last) = (route.configurations.first()?, route.configurations.last()?);
+        if separation(robot, first, last) < SAME {
+            return None;
+        }
+        let apart = |joint: &usize| (last[*joint] - first[*joint]).abs();
+        let joint = (0..first.len()).max_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+        let error = ManipulatorError::NotCyclic {
+            joint: robot.chain.joint_names()[joint].clone(),
+            from: first[joint],
+            to: last[joint],
+        };
+        Some(self.tracker.stopped(self.tracker.curve.domain().1, error))
+    }
 }
 
-fn off_curve(tracker: &Tracker<'_>, q: &DVector<f64>, target: &Pose) -> PoseError {
-    PoseError::between(&tracker.robot.chain.forward(q), target)
+/// Why a route is none.
+enum NoPath {
+    /// It cannot be followed from a station to the next.
+    Stopped(Stopped),
+    /// It can, but no choice of whole turns keeps a joint within its limits all along.
+    WoundUp(Stopped),
 }
 
-fn through(tracker: &Tracker<'_>, samples: &[Sample]) -> Result<QuinticSpline> {
-    let knots: Vec<f64> = samples.iter().map(|sample| sample.s).collect();
-    let values: Vec<DVector<f64>> = samples.iter().map(|sample| sample.q.clone()).collect();
-    let end =
-        |sample: &Sample| EndDerivatives { first: sample.rate.clone(), second: tracker.second_derivative(sample) };
-    QuinticSpline::through(&knots, &values, [&end(&samples[0]), &end(&samples[samples.len() - 1])])
-}
-
-/// Puts a sample into the middle of every marked interval, and of every one that is far longer than a neighbour.
-fn refine(
+/// The whole turns, in rad, that bring every freely turning joint within its limits all along and its start nearest to `reference`.
+fn whole_turns(
     tracker: &Tracker<'_>,
-    spline: &QuinticSpline,
     samples: &[Sample],
-    mut marked: Vec<bool>,
-) -> Result<Vec<Sample>> {
-    let new_length = |i: usize, marked: &[bool]| (samples[i + 1].s - samples[i].s) * if marked[i] { 0.5 } else { 1.0 };
-    loop {
-        let uneven = (0..marked.len()).find(|&i| {
-            let neighbours = [i.checked_sub(1), (i + 1 < marked.len()).then_some(i + 1)];
-            let shortest =
-                neighbours.into_iter().flatten().map(|k| new_length(k, &marked)).fold(f64::INFINITY, f64::min);
-            !marked[i] && new_length(i, &marked) > MAX_SPACING_RATIO * shortest
-        });
-        let Some(i) = uneven else { break };
-        marked[i] = true;
-    }
-    let mut refined = Vec::with_capacity(2 * samples.len());
-    for (i, sample) in samples.iter().enumerate() {
-        refined.push(sample.clone());
-        if marked.get(i) == Some(&true) {
-            let half = 0.5 * (samples[i + 1].s - sample.s);
-            let [seed, ..] = spline.in_segment(i, half);
-            refined.push(tracker.sample(sample.s + half, &seed)?);
+    reference: &DVector<f64>,
+) -> std::result::Result<DVector<f64>, Stopped> {
+    let (robot, turn) = (tracker.robot, std::f64::consts::TAU);
+    let mut turns = DVector::zeros(reference.len());
+    for joint in (0..reference.len()).filter(|&joint| turns_freely(robot, joint)) {
+        let (lower, upper) = (robot.limits.lower[joint], robot.limits.upper[joint]);
+        let range = samples.iter().map(|sample| sample.q[joint]);
+        let (least, most) = range.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), q| (lo.min(q), hi.max(q)));
+        let fewest = ((lower - least - 1e-9) / turn).ceil();
+        let greatest = ((upper - most + 1e-9) / turn).floor();
+        let wanted = ((reference[joint] - samples[0].q[joint]) / turn).round();
+        turns[joint] = turn * wanted.max(fewest).min(greatest);
+        if fewest > greatest {
+            let beyond = |sample: &&Sample| !(lower..=upper).contains(&(sample.q[joint] + turns[joint]));
+            let at = samples.iter().find(beyond).unwrap_or(&samples[0]);
+            let error = ManipulatorError::JointLimit {
+                pose: tracker.pose_after(at.s),
+                joint: robot.chain.joint_names()[joint].clone(),
+                value: at.q[joint] + turns[joint],
+                lower,
+                upper,
+            };
+            return Err(Stopped { parameter: at.s, pose: tracker.pose_after(at.s), error });
         }
     }
-    Ok(refined)
+    Ok(turns)
 }

@@ -1,7 +1,7 @@
 //! Inverse kinematics of one pose by damped least squares.
 
 use nalgebra::{DVector, Matrix6, Matrix6xX, Vector6};
-use se3_geom::{LieGroup, Pose, Se3Group, Twist};
+use se3_geom::{Pose, Twist};
 
 use crate::chain::Chain;
 use crate::error::{ManipulatorError, Result};
@@ -39,6 +39,11 @@ impl PoseError {
         }
     }
 
+    fn of(twist: &Vector6<f64>) -> Self {
+        let Twist { linear, angular } = Twist::from_vector(twist);
+        Self { position_m: linear.norm(), rotation_rad: angular.norm() }
+    }
+
     pub(crate) fn within(&self, tolerance_m: f64, tolerance_rad: f64) -> bool {
         self.position_m <= tolerance_m && self.rotation_rad <= tolerance_rad
     }
@@ -46,7 +51,7 @@ impl PoseError {
 
 /// A configuration within the joint limits whose tool pose is `target` (`base_from_tool`), found from `seed` of shape (dof).
 ///
-/// Levenberg–Marquardt on the body twist log(T(q)⁻¹·target). Of the equivalent positions of a turning joint, whole turns apart, the
+/// Levenberg–Marquardt on the tool's distance and angle from the target. Of the equivalent positions of a turning joint, whole turns apart, the
 /// one nearest to the seed within the limits is taken.
 ///
 /// # Errors
@@ -65,9 +70,9 @@ pub fn solve_ik(robot: &Robot, target: &Pose, seed: &DVector<f64>, options: &IkO
         }
     }
     let held = descend(&robot.chain, target, seed, options, Some(&robot.limits));
-    held.map_err(|left| ManipulatorError::IkNotConverged {
-        position_error_m: left.position_m,
-        rotation_error_rad: left.rotation_rad,
+    held.map_err(|miss| ManipulatorError::IkNotConverged {
+        position_error_m: miss.error.position_m,
+        rotation_error_rad: miss.error.rotation_rad,
     })
 }
 
@@ -90,6 +95,13 @@ pub(crate) fn nearest_turns(robot: &Robot, q: &DVector<f64>, reference: &DVector
     })
 }
 
+/// Where a descent ended short of its target.
+#[derive(Debug, Clone)]
+pub(crate) struct Miss {
+    pub(crate) q: DVector<f64>,
+    pub(crate) error: PoseError,
+}
+
 /// Levenberg–Marquardt from `seed`; with `limits`, every step is projected onto them.
 pub(crate) fn descend(
     chain: &Chain,
@@ -97,29 +109,32 @@ pub(crate) fn descend(
     seed: &DVector<f64>,
     options: &IkOptions,
     limits: Option<&Limits>,
-) -> std::result::Result<DVector<f64>, PoseError> {
-    let clamp = |mut q: DVector<f64>| {
+) -> std::result::Result<DVector<f64>, Miss> {
+    let clamp = |q: &mut DVector<f64>| {
         if let Some(limits) = limits {
             q.iter_mut().enumerate().for_each(|(i, x)| *x = x.clamp(limits.lower[i], limits.upper[i]));
         }
-        q
     };
-    let mut q = clamp(seed.clone());
-    let mut tool = chain.forward(&q);
-    let mut twist = tool_error(&tool, target);
+    let mut q = seed.clone();
+    clamp(&mut q);
+    let mut jacobian = Matrix6xX::zeros(chain.dof());
+    let (mut trial, mut trial_jacobian) = (q.clone(), jacobian.clone());
+    let mut twist = tool_error(&chain.forward_with_jacobian(&q, &mut jacobian), target);
     let mut damping = 1e-3;
     for _ in 0..options.max_iterations {
-        if PoseError::between(&tool, target).within(options.tolerance_m, options.tolerance_rad) {
+        if PoseError::of(&twist).within(options.tolerance_m, options.tolerance_rad) {
             return Ok(q);
         }
-        let jacobian = chain.body_jacobian(&q);
         // Damping in proportion to the squared error keeps the convergence quadratic (Sugihara 2011).
-        let Some(step) = damped_step(&jacobian, &twist, damping * twist.norm_squared()) else { break };
-        let trial = clamp(&q + step);
-        let trial_tool = chain.forward(&trial);
-        let trial_twist = tool_error(&trial_tool, target);
+        let Some(pull) = solve_gram(&jacobian, &twist, damping * twist.norm_squared()) else { break };
+        trial.copy_from(&q);
+        trial.gemv_tr(1.0, &jacobian, &pull, 1.0);
+        clamp(&mut trial);
+        let trial_twist = tool_error(&chain.forward_with_jacobian(&trial, &mut trial_jacobian), target);
         if trial_twist.norm_squared() < twist.norm_squared() {
-            (q, tool, twist) = (trial, trial_tool, trial_twist);
+            std::mem::swap(&mut q, &mut trial);
+            std::mem::swap(&mut jacobian, &mut trial_jacobian);
+            twist = trial_twist;
             damping = (damping * 0.2).max(1e-9);
         } else {
             damping *= 8.0;
@@ -128,29 +143,78 @@ pub(crate) fn descend(
             }
         }
     }
-    let left = PoseError::between(&tool, target);
-    if left.within(options.tolerance_m, options.tolerance_rad) { Ok(q) } else { Err(left) }
+    let error = PoseError::of(&twist);
+    if error.within(options.tolerance_m, options.tolerance_rad) { Ok(q) } else { Err(Miss { q, error }) }
 }
 
-/// Jᵀ(JJᵀ + λI)⁻¹·twist.
-fn damped_step(jacobian: &Matrix6xX<f64>, twist: &Vector6<f64>, lambda: f64) -> Option<DVector<f64>> {
+/// How exactly the self-motion that is left to a redundant arm is fixed, in rad or m.
+const POSTURE_TOLERANCE: f64 = 1e-9;
+/// Longest step towards a posture, in rad or m: the self-motion is a curve, which its tangent leaves.
+const LONGEST_STEP: f64 = 0.3;
+
+/// Of the configurations at `target` the one nearest to `posture`, found from `seed`: the pose is reached and what is left of
+/// `posture` − q lies in the row space of J. A smooth function of target and posture where J has full rank and the posture is
+/// nearer than the self-motion's radius of curvature (implicit function theorem).
+///
+/// Newton on the pose and a projected step to the posture: quadratic in the first, in the second a contraction that is the faster
+/// the nearer the posture.
+pub(crate) fn nearest_to(
+    chain: &Chain,
+    target: &Pose,
+    seed: &DVector<f64>,
+    posture: &DVector<f64>,
+    options: &IkOptions,
+) -> std::result::Result<DVector<f64>, Miss> {
+    let mut q = seed.clone();
+    let mut jacobian = Matrix6xX::zeros(chain.dof());
+    let mut step = q.clone();
+    let mut twist = Vector6::zeros();
+    for _ in 0..options.max_iterations {
+        twist = tool_error(&chain.forward_with_jacobian(&q, &mut jacobian), target);
+        step.copy_from(posture);
+        step -= &q;
+        let Some(pull) = solve_gram(&jacobian, &(twist - &jacobian * &step), 0.0) else { break };
+        step.gemv_tr(1.0, &jacobian, &pull, 1.0);
+        let length = step.amax();
+        if length < POSTURE_TOLERANCE && PoseError::of(&twist).within(options.tolerance_m, options.tolerance_rad) {
+            return Ok(q);
+        }
+        q.axpy((LONGEST_STEP / length).min(1.0), &step, 1.0);
+    }
+    Err(Miss { q, error: PoseError::of(&twist) })
+}
+
+/// (JJᵀ + λI)⁻¹·twist.
+fn solve_gram(jacobian: &Matrix6xX<f64>, twist: &Vector6<f64>, lambda: f64) -> Option<Vector6<f64>> {
     // A hundred roundings of the squares keep the factorisation possible at a singularity.
-    let least = 1e-14 * jacobian.norm_squared();
-    let gram = jacobian * jacobian.transpose() + Matrix6::identity() * lambda.max(least);
-    Some(jacobian.transpose() * gram.cholesky()?.solve(twist))
+    let gram = gram(jacobian);
+    let least = 1e-14 * gram.trace();
+    Some((gram + Matrix6::identity() * lambda.max(least)).cholesky()?.solve(twist))
 }
 
-/// J⁺·twist: the joint rates (of least norm where there are more than six joints) that move the tool by `twist`.
-pub(crate) fn rates_for(jacobian: &Matrix6xX<f64>, twist: &Vector6<f64>) -> Option<DVector<f64>> {
-    damped_step(jacobian, twist, 0.0)
+/// JJᵀ.
+pub(crate) fn gram(jacobian: &Matrix6xX<f64>) -> Matrix6<f64> {
+    let mut gram = Matrix6::zeros();
+    for column in jacobian.column_iter() {
+        gram.ger(1.0, &column, &column, 1.0);
+    }
+    gram
 }
 
-/// log(tool⁻¹·target) as (linear, angular); at half a turn one of the two shortest ways.
+/// The joint rates nearest to `wanted` that move the tool by `twist`: w + J⁺(twist − J·w).
+pub(crate) fn rates_for(
+    jacobian: &Matrix6xX<f64>,
+    twist: &Vector6<f64>,
+    mut wanted: DVector<f64>,
+) -> Option<DVector<f64>> {
+    let pull = solve_gram(jacobian, &(twist - jacobian * &wanted), 0.0)?;
+    wanted.gemv_tr(1.0, jacobian, &pull, 1.0);
+    Some(wanted)
+}
+
+/// (Rᵀ(p* − p), log RᵀR*): position and rotation apart, to first order the body twist that is missing.
 fn tool_error(tool: &Pose, target: &Pose) -> Vector6<f64> {
-    let tool_from_target = tool.inverse() * target;
-    let twist = Se3Group::log(&tool_from_target).unwrap_or_else(|_| {
-        let axis = tool_from_target.rotation.imag().normalize();
-        Twist::new(tool_from_target.translation.vector, axis * std::f64::consts::PI)
-    });
-    twist.to_vector()
+    let back = tool.rotation.inverse();
+    let linear = back * (target.translation.vector - tool.translation.vector);
+    Twist::new(linear, (back * target.rotation).scaled_axis()).to_vector()
 }

@@ -8,7 +8,7 @@
 //! joints), times in s.
 //!
 //! Chains may have any number of joints. With fewer than six no pose can be followed ([`ManipulatorError::Singular`]); with more, the
-//! joints take the least motion from each pose to the next, which uses none of the freedom that is left to avoid limits.
+//! freedom that is left keeps them away from limits and singularities.
 //!
 //! ```
 //! use manipulator::{follow, time_path, PathOptions, Robot, TimingOptions};
@@ -39,15 +39,24 @@ mod follow;
 mod handover;
 mod ik;
 mod joint_path;
+mod layers;
 mod optimise;
+mod path_report;
+mod posture;
+mod posture_spline;
 mod quintic;
 mod quintic_spline;
+mod reach;
+mod relaxation;
 mod rest_to_rest;
 mod robot;
+mod route;
 mod sampling;
 mod slowing;
 mod speed_profile;
+mod stations;
 mod timing;
+mod tolerance;
 mod trajectory;
 mod urdf;
 
@@ -59,7 +68,9 @@ pub use handover::connect;
 pub use ik::{IkOptions, solve_ik};
 pub use joint_path::JointPath;
 pub use nalgebra;
+pub use path_report::{PathReport, Worst};
 pub use quintic_spline::EndDerivatives;
+pub use reach::{OutOfReach, PoseMiss};
 pub use rest_to_rest::rest_to_rest;
 pub use robot::{Limits, Robot};
 pub use slowing::slow_to_stop;

@@ -24,6 +24,11 @@ impl Quintic {
         Self { h, coefficients }
     }
 
+    /// Adds a constant.
+    pub(crate) fn move_by(&mut self, offset: f64) {
+        self.coefficients[0] += offset;
+    }
+
     /// Value and first three derivatives at `t`.
     pub(crate) fn at(&self, t: f64) -> [f64; 4] {
         let (u, rate) = (t / self.h, self.h.recip());
@@ -53,6 +58,17 @@ impl Quintic {
         sum * self.h
     }
 
+    /// Bounds of the derivatives of order 0 to 2 on \[0, h\], least and greatest Bernstein coefficient: not sharp, but quick.
+    pub(crate) fn hulls(&self) -> [(f64, f64); 3] {
+        let [_, c1, c2, c3, c4, c5] = self.coefficients;
+        let rate = self.h.recip();
+        [
+            hull(&self.coefficients, 1.0),
+            hull(&[c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 5.0 * c5], rate),
+            hull(&[2.0 * c2, 6.0 * c3, 12.0 * c4, 20.0 * c5], rate.powi(2)),
+        ]
+    }
+
     /// Least and greatest value of the derivatives of order 0 to 3 on \[0, h\], exactly but for rounding.
     pub(crate) fn ranges(&self) -> [(f64, f64); 4] {
         let velocity = differentiate(&self.coefficients);
@@ -80,6 +96,20 @@ impl Quintic {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
         })
     }
+}
+
+/// Least and greatest Bernstein coefficient bᵢ = Σₖ C(i, k)/C(n, k)·cₖ of a polynomial of degree n on \[0, 1\].
+fn hull(polynomial: &[f64], scale: f64) -> (f64, f64) {
+    let degree = polynomial.len() - 1;
+    let coefficient = |i: usize| {
+        let (mut sum, mut ratio) = (polynomial[0], 1.0);
+        for (k, c) in polynomial.iter().enumerate().take(i + 1).skip(1) {
+            ratio *= (i + 1 - k) as f64 / (degree + 1 - k) as f64;
+            sum += ratio * c;
+        }
+        sum * scale
+    };
+    (0..=degree).map(coefficient).fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), b| (lo.min(b), hi.max(b)))
 }
 
 fn evaluate(polynomial: &[f64], u: f64) -> f64 {

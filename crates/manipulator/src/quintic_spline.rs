@@ -64,6 +64,19 @@ impl QuinticSpline {
         self.in_segment(segment, s - self.knots[segment])
     }
 
+    /// The polynomials of a segment, one a joint.
+    pub(crate) fn polynomials(&self, segment: usize) -> &[Quintic] {
+        &self.segments[segment]
+    }
+
+    /// The same spline, moved by a constant.
+    pub(crate) fn moved_by(mut self, offset: &DVector<f64>) -> Self {
+        for segment in &mut self.segments {
+            segment.iter_mut().zip(offset.iter()).for_each(|(polynomial, by)| polynomial.move_by(*by));
+        }
+        self
+    }
+
     pub(crate) fn in_segment(&self, segment: usize, local: f64) -> [DVector<f64>; 4] {
         let polynomials = &self.segments[segment];
         let mut values = [(); 4].map(|()| DVector::zeros(polynomials.len()));

@@ -2,8 +2,8 @@
 
 use manipulator::nalgebra::DVector;
 use manipulator::{
-    Audit, JointTrajectory, ManipulatorError, Robot, TimedPath, audit, audit_from, connect, follow, rest_to_rest,
-    time_path,
+    Audit, JointTrajectory, ManipulatorError, PathReport, Robot, TimedPath, audit, audit_from, connect, follow,
+    rest_to_rest, time_path,
 };
 use reorder::{Ordering, Topology, order_poses};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, SplineError, centripetal_knots};
@@ -53,6 +53,8 @@ pub struct Plan {
     pub pose_error_max_rad: f64,
     /// How long the move from the start state to the first pose takes, in s; zero without one.
     pub approach_s: f64,
+    /// How near the joint path comes to singularities and position limits.
+    pub path_report: PathReport,
 }
 
 /// Poses on each segment of [`Plan::path`].
@@ -105,6 +107,7 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
         source,
     };
     let path = follow(robot, &spline, start.as_ref(), &config.path).map_err(at_fault)?;
+    let path_report = PathReport::of(robot, &path).map_err(at_fault)?;
     let timed = time_path(robot, &path, &config.timing).map_err(at_fault)?;
     let (trajectory, approach_s) = match &start {
         Some(start) if config.approach => {
@@ -117,7 +120,17 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
     let pose_times_s = times_by_input(&ordering, &distinct, &timed.knot_times_s, approach_s);
     let (pose_error_max_m, pose_error_max_rad) = accuracy(robot, config, poses, &trajectory, &pose_times_s)?;
     let audit = passed_audit(robot, &trajectory, request.handover.as_ref())?;
-    Ok(Plan { ordering, spline, trajectory, pose_times_s, audit, pose_error_max_m, pose_error_max_rad, approach_s })
+    Ok(Plan {
+        ordering,
+        spline,
+        trajectory,
+        pose_times_s,
+        audit,
+        pose_error_max_m,
+        pose_error_max_rad,
+        approach_s,
+        path_report,
+    })
 }
 
 fn start_state(robot: &Robot, request: &Request) -> Result<Option<DVector<f64>>, Refusal> {

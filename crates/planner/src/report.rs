@@ -1,6 +1,6 @@
 //! The report that is published beside a trajectory.
 
-use manipulator::Audit;
+use manipulator::{Audit, PathReport};
 use reorder::Ordering;
 use serde::Serialize;
 
@@ -40,6 +40,9 @@ pub struct PlanReport {
     pub pose_times_s: Vec<f64>,
     /// The limits.
     pub audit: Audit,
+    /// Least manipulability, least singular value and least margin to a position limit along the joint path, with their places along
+    /// the recovered order.
+    pub path: PathReport,
 }
 
 impl Report {
@@ -57,6 +60,7 @@ impl Report {
                     pose_error_max_rad: plan.pose_error_max_rad,
                     pose_times_s: plan.pose_times_s.clone(),
                     audit: plan.audit,
+                    path: plan.path_report.clone(),
                 }),
                 refusal: None,
             },

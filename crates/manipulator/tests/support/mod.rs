@@ -31,6 +31,15 @@ pub(crate) fn random_configuration(robot: &Robot, half_range: f64, random: &mut 
     DVector::from_fn(robot.chain.dof(), |_, _| random.between(-half_range, half_range))
 }
 
+/// A random configuration in the middle `part` of the joint ranges, at most a turn of each.
+pub(crate) fn configuration_within(robot: &Robot, part: f64, random: &mut Random) -> DVector<f64> {
+    DVector::from_fn(robot.chain.dof(), |joint, _| {
+        let (lower, upper) = (robot.limits.lower[joint], robot.limits.upper[joint]);
+        let half = (0.5 * (upper - lower)).min(std::f64::consts::PI);
+        0.5 * (lower + upper) + part * half * random.between(-1.0, 1.0)
+    })
+}
+
 /// A smooth random path: every joint a sum of three sines of random phase and up to `waves` periods, sampled at `samples` parameters.
 pub(crate) fn random_path(robot: &Robot, waves: f64, samples: usize, random: &mut Random) -> JointPath {
     let dof = robot.chain.dof();
