@@ -27,7 +27,7 @@ mod servo;
 mod trajectory_file;
 
 pub use arm::{ExecuteOptions, SimulatedArm};
-pub use chain::read_chain;
+pub use chain::{read_chain, read_dynamics};
 pub use contact::{ContactEvent, Touch};
 pub use error::SimError;
 pub use execution::{Execution, JointTracking, PoseErrors, Sample};
