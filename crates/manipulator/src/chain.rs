@@ -64,6 +64,16 @@ impl Chain {
         self.screws.len()
     }
 
+    /// Bᵢ, the screw axes in the tool frame at zero.
+    pub(crate) fn screws(&self) -> &[Twist] {
+        &self.screws
+    }
+
+    /// M, `base_from_tool` at zero.
+    pub(crate) fn home(&self) -> &Pose {
+        &self.home
+    }
+
     /// Whether a joint turns (revolute or continuous), so that a full turn brings the arm back to the same pose.
     pub(crate) fn is_rotary(&self, joint: usize) -> bool {
         self.rotary[joint]
@@ -167,7 +177,7 @@ impl Chain {
 }
 
 /// The Lie bracket \[a, b\] of two twists.
-fn bracket(a: Twist, b: Twist) -> Twist {
+pub(crate) fn bracket(a: Twist, b: Twist) -> Twist {
     Twist::new(a.angular.cross(&b.linear) + a.linear.cross(&b.angular), a.angular.cross(&b.angular))
 }
 

@@ -62,6 +62,20 @@ pub enum ManipulatorError {
         /// What would be right.
         must_be: &'static str,
     },
+    /// The inertia of a body is impossible.
+    #[error("the inertia of a body is impossible: {reason}")]
+    Inertia {
+        /// In which way.
+        reason: &'static str,
+    },
+    /// The inertia of a link is impossible.
+    #[error("the inertia of link {link:?} is impossible: {reason}")]
+    LinkInertia {
+        /// Its name.
+        link: String,
+        /// In which way.
+        reason: &'static str,
+    },
     /// The settings do not cover a joint of the chain.
     #[error("the robot settings say nothing about joint {joint:?}: its acceleration and jerk limits are needed")]
     MissingSettings {

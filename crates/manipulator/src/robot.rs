@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Matrix3, Vector3};
 use serde::Deserialize;
 
 use crate::chain::Chain;
+use crate::dynamics::{Drive, Dynamics, GRAVITY_M_S2};
 use crate::error::{ManipulatorError, Result};
+use crate::inertia::Inertia;
 use crate::urdf::{self, UrdfLimits};
 
 /// Name, URDF and settings.
@@ -51,6 +53,8 @@ pub struct Robot {
     pub chain: Chain,
     /// What each joint may do.
     pub limits: Limits,
+    /// Torques that motions need; none where no link between the joints and the tool has a mass.
+    pub dynamics: Option<Dynamics>,
     /// The configuration to stay close to where the robot's present state is unknown, of shape (dof).
     pub preferred: DVector<f64>,
     /// Name of the base frame, in which tool poses are given.
@@ -64,7 +68,24 @@ pub struct Robot {
 struct Settings {
     base_frame: String,
     tool_frame: String,
+    #[serde(default = "downwards")]
+    gravity_m_s2: [f64; 3],
+    #[serde(default)]
+    payload: Payload,
     joints: BTreeMap<String, JointSettings>,
+}
+
+fn downwards() -> [f64; 3] {
+    GRAVITY_M_S2
+}
+
+/// A point mass at the tool, in the tool frame.
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct Payload {
+    mass_kg: f64,
+    #[serde(default)]
+    center_of_mass_m: [f64; 3],
 }
 
 /// For prismatic joints the same figures in metres, under the keys with `_m`.
@@ -85,6 +106,8 @@ struct JointSettings {
     upper_rad: Option<f64>,
     #[serde(default, alias = "preferred_m")]
     preferred_rad: Option<f64>,
+    #[serde(default, alias = "rotor_inertia_kg")]
+    rotor_inertia_kg_m2: f64,
 }
 
 impl Robot {
@@ -120,7 +143,10 @@ impl Robot {
     ///
     /// The settings have `base_frame`, `tool_frame` and, under `joints`, for every moving joint between them
     /// `acceleration_rad_s2`, `jerk_rad_s3` and optionally `lower_rad`, `upper_rad`, `velocity_rad_s`, `effort_n_m`
-    /// (which only tighten the URDF's) and `preferred_rad` (else the middle of the range).
+    /// (which only tighten the URDF's), `preferred_rad` (else the middle of the range) and `rotor_inertia_kg_m2` (as seen at the joint,
+    /// else 0). Also optional are `gravity_m_s2` in the base frame and `payload` with `mass_kg` and `center_of_mass_m` in the tool frame.
+    ///
+    /// Links between two moving joints, and what hangs on them, count as one body; other moving joints stay at zero.
     ///
     /// # Errors
     /// A [`ManipulatorError`] that names the frame, joint or key that is wrong.
@@ -148,8 +174,27 @@ impl Robot {
             effort: column(5),
         };
         let preferred = column(6);
+        let mut links = urdf::carried(&description, &settings.base_frame, &settings.tool_frame)?;
+        let payload = Vector3::from(settings.payload.center_of_mass_m);
+        let payload = Inertia::of_body(settings.payload.mass_kg, payload, Matrix3::zeros())
+            .map_err(|error| ManipulatorError::Settings { reason: format!("payload: {error}") })?;
+        if let Some(last) = links.last_mut() {
+            *last = *last + payload.in_parent(chain.home());
+        }
+        let drives: Vec<Drive> = chain
+            .joint_names()
+            .iter()
+            .zip(&stated)
+            .map(|(name, stated)| Drive {
+                rotor_inertia_kg_m2: settings.joints[name].rotor_inertia_kg_m2,
+                damping_n_m_s: stated.damping,
+                friction_n_m: stated.friction,
+            })
+            .collect();
+        let dynamics = Dynamics::new(&chain, &links, &drives, settings.gravity_m_s2)?;
+        let dynamics = links.iter().any(|link| link.mass_kg() > 0.0).then_some(dynamics);
         let Settings { base_frame, tool_frame, .. } = settings;
-        Ok(Self { name: description.name, chain, limits, preferred, base_frame, tool_frame })
+        Ok(Self { name: description.name, chain, limits, dynamics, preferred, base_frame, tool_frame })
     }
 
     /// Whether `q` has a finite position for every joint, within its limits up to rounding; `what` names it in the error.

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Translation3, UnitQuaternion, Vector3};
 use se3_geom::{Pose, Twist};
 use urdf_rs::{Joint, JointType};
 
 use crate::chain::Chain;
 use crate::error::{ManipulatorError, Result};
+use crate::inertia::Inertia;
 
 /// Limits of one joint as the URDF has them.
 pub(crate) struct UrdfLimits {
@@ -16,6 +17,8 @@ pub(crate) struct UrdfLimits {
     pub(crate) velocity: f64,
     /// Infinite where none is stated.
     pub(crate) effort: f64,
+    pub(crate) damping: f64,
+    pub(crate) friction: f64,
 }
 
 pub(crate) fn parse(urdf: &str) -> Result<urdf_rs::Robot> {
@@ -77,6 +80,50 @@ fn joints_between<'a>(robot: &'a urdf_rs::Robot, base: &str, tool: &str) -> Resu
     Ok(joints)
 }
 
+/// What each moving joint between `base` and `tool` carries, in the frame `base` with all joints at zero: the links up to the next
+/// of those joints and all that hangs on them, moving or not. Links without an inertial have none.
+pub(crate) fn carried(robot: &urdf_rs::Robot, base: &str, tool: &str) -> Result<Vec<Inertia>> {
+    let moving: Vec<&str> = joints_between(robot, base, tool)?
+        .into_iter()
+        .filter(|joint| joint.joint_type != JointType::Fixed)
+        .map(|joint| joint.name.as_str())
+        .collect();
+    let mut carried = vec![Inertia::default(); moving.len()];
+    let mut ahead = vec![(base, Pose::identity(), None)];
+    let mut links_left = robot.links.len();
+    while let Some((name, base_from_link, carrier)) = ahead.pop() {
+        // A URDF whose joints form a ring would have no end.
+        links_left = links_left
+            .checked_sub(1)
+            .ok_or_else(|| ManipulatorError::NoChain { base: base.into(), tool: tool.into() })?;
+        if let (Some(joint), Some(link)) = (carrier, robot.links.iter().find(|link| link.name == name)) {
+            let own: usize = joint;
+            carried[own] = carried[own] + inertia(link)?.in_parent(&base_from_link);
+        }
+        for joint in robot.joints.iter().filter(|joint| joint.parent.link == name) {
+            let place = moving.iter().position(|name| *name == joint.name);
+            ahead.push((&joint.child.link, base_from_link * origin(joint)?, place.or(carrier)));
+        }
+    }
+    Ok(carried)
+}
+
+/// Inertia of a link in its own frame.
+fn inertia(link: &urdf_rs::Link) -> Result<Inertia> {
+    let stated = &link.inertial;
+    let [x, y, z] = stated.origin.xyz.0;
+    let [roll, pitch, yaw] = stated.origin.rpy.0;
+    let t = &stated.inertia;
+    let tensor = Matrix3::new(t.ixx, t.ixy, t.ixz, t.ixy, t.iyy, t.iyz, t.ixz, t.iyz, t.izz);
+    let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw).to_rotation_matrix().into_inner();
+    Inertia::of_body(stated.mass.value, Vector3::new(x, y, z), turn * tensor * turn.transpose()).map_err(|error| {
+        match error {
+            ManipulatorError::Inertia { reason } => ManipulatorError::LinkInertia { link: link.name.clone(), reason },
+            other => other,
+        }
+    })
+}
+
 /// `parent_from_joint`; URDF's rpy are fixed-axis angles, R = Rz(y)·Ry(p)·Rx(r).
 fn origin(joint: &Joint) -> Result<Pose> {
     let (xyz, rpy) = (joint.origin.xyz.0, joint.origin.rpy.0);
@@ -118,14 +165,15 @@ fn stated_limits(joint: &Joint) -> Result<UrdfLimits> {
     // The parser reads an absent effort as 0, and URDFs without dynamics say 0 too.
     let effort = if limit.effort > 0.0 { limit.effort } else { f64::INFINITY };
     let velocity = limit.velocity;
+    let (damping, friction) = joint.dynamics.as_ref().map_or((0.0, 0.0), |stated| (stated.damping, stated.friction));
     if joint.joint_type == JointType::Continuous {
-        return Ok(UrdfLimits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity, effort });
+        return Ok(UrdfLimits { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity, effort, damping, friction });
     }
     let range = limit.upper - limit.lower;
     if !(range.is_finite() && range > 0.0) {
         return Err(invalid(joint, "its range (upper - lower limit)", range, "stated and positive"));
     }
-    Ok(UrdfLimits { lower: limit.lower, upper: limit.upper, velocity, effort })
+    Ok(UrdfLimits { lower: limit.lower, upper: limit.upper, velocity, effort, damping, friction })
 }
 
 fn invalid(joint: &Joint, what: &'static str, value: f64, must_be: &'static str) -> ManipulatorError {

@@ -31,7 +31,7 @@ mod sweep;
 mod trajectory_file;
 
 pub use arm::{ExecuteOptions, SimulatedArm};
-pub use chain::read_chain;
+pub use chain::{read_chain, read_dynamics};
 pub use contact::{ContactEvent, Touch};
 pub use error::SimError;
 pub use execution::{Execution, JointTracking, PoseErrors, Sample};
