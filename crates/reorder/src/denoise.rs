@@ -1,33 +1,35 @@
-//! Points moved onto the line that their neighbours suggest.
+//! Points moved toward the parabola that their neighbours suggest.
 
 use se3_geom::Manifold;
+use se3_geom::nalgebra::{Matrix3, Vector3};
 
 use crate::tour::Problem;
 
 /// Rounds of the power iteration; the direction only has to be good to a fraction of the noise.
 const ROUNDS: usize = 30;
 
-/// Every point moved onto the weighted principal line of its near points and itself, and how far each was moved.
+/// Every point moved toward the parabola that fits its near points and itself, and how far each was moved.
 ///
 /// In the tangent space at p, with vᵢ = log_p(qᵢ) of the eight nearest points, v₀ = 0 and weights wᵢ = exp(−‖vᵢ‖²/2h²), h the mean
-/// of ‖vᵢ‖, the line goes through the weighted mean along the direction u that makes Σ wᵢ⟨vᵢ − mean, u⟩² greatest; p moves to
-/// the foot of the perpendicular from 0. Inner products are all that is used: u = Σ cᵢ(vᵢ − mean), where c is the greatest
-/// eigenvector of the weighted Gram matrix. Noise of independent points shrinks to about √(3/8) of itself across the curve, and
-/// stays along it.
+/// of ‖vᵢ‖, the direction u of the curve is the one that makes Σ wᵢ⟨vᵢ − mean, u⟩² greatest. With tᵢ = ⟨vᵢ, u⟩ the parabola a + bt + ct²
+/// makes Σ wᵢ‖vᵢ − a − btᵢ − ctᵢ²‖² least; p moves by the part of a across u, but no farther than the median of those misses: that is
+/// what the noise is by the points themselves, and where the near points are of two strands, or p is in a sharp bend, a is none to
+/// follow. Inner products are all that is used: u is a sum of the vᵢ − mean by the greatest eigenvector of their weighted Gram
+/// matrix.
 pub(crate) fn denoised<M: Manifold>(
     manifold: &M,
     points: &[M::Point],
     problem: &Problem<M>,
 ) -> (Vec<M::Point>, Vec<f64>) {
     let moved = |v: usize| {
-        let step = step_to_line(manifold, &points[v], problem, v)?;
+        let step = step_to_parabola(manifold, &points[v], problem, v)?;
         Some((manifold.exp(&points[v], step), manifold.norm(&points[v], step)))
     };
     (0..points.len()).map(|v| moved(v).unwrap_or_else(|| (points[v].clone(), 0.0))).unzip()
 }
 
 /// `None` where the near points give no direction.
-fn step_to_line<M: Manifold>(manifold: &M, p: &M::Point, problem: &Problem<M>, v: usize) -> Option<M::Tangent> {
+fn step_to_parabola<M: Manifold>(manifold: &M, p: &M::Point, problem: &Problem<M>, v: usize) -> Option<M::Tangent> {
     let logs: Vec<M::Tangent> = problem.near(v).iter().filter_map(|near| near.log()).collect();
     let first = *logs.first()?;
     let zero = first * 0.0;
@@ -53,5 +55,21 @@ fn step_to_line<M: Manifold>(manifold: &M, p: &M::Point, problem: &Problem<M>, v
         }
         u = next * (1.0 / length);
     }
-    Some(mean - u * manifold.inner(p, mean, u))
+    // In units of the mean length, so that the normal equations are well scaled.
+    let powers = around.iter().map(|&v| manifold.inner(p, v, u) / mean_length).map(|t| Vector3::new(1.0, t, t * t));
+    let powers: Vec<Vector3<f64>> = powers.collect();
+    let normal: Matrix3<f64> = powers.iter().zip(&weights).map(|(row, &w)| row * row.transpose() * w).sum();
+    let inverse = normal.try_inverse()?;
+    let coefficient = |k: usize| {
+        let shares: Vec<f64> = powers.iter().zip(&weights).map(|(row, w)| w * (inverse * row)[k]).collect();
+        sum(&shares, &around)
+    };
+    let [a, b, c] = [0, 1, 2].map(coefficient);
+    let mut misses: Vec<f64> =
+        around.iter().zip(&powers).map(|(&v, t)| manifold.norm(p, v - a - b * t[1] - c * t[2])).collect();
+    let middle = misses.len() / 2;
+    let noise = *misses.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let across = a - u * manifold.inner(p, a, u);
+    let length = manifold.norm(p, across);
+    length.is_finite().then(|| if length > noise { across * (noise / length) } else { across })
 }

@@ -122,7 +122,7 @@ pub struct Options {
     pub method: MethodChoice,
     /// Whether [`MethodChoice::Auto`] may repair.
     pub repair: Repair,
-    /// Whether the points are noisy, and each is to be moved onto the principal line of its neighbours before they are ordered.
+    /// Whether the points are noisy, and each is to be moved toward the parabola through its neighbours before they are ordered.
     /// Never changes a point that is handed on: only the order comes from the moved ones, and a clean curve is better left alone.
     pub denoise: bool,
     /// Whether the points may be samples of several curves.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use se3_geom::nalgebra::{Isometry2, Isometry3, SVector, Similarity2, UnitComplex, UnitQuaternion, Vector2, Vector3};
 use se3_geom::{Euclidean, Manifold, R2, R3, Se2, Se3, Sim2, So2, So3, Sphere};
 
-use super::{coordinates::Coordinates, minimum_spanning_tree, prim};
+use super::{coordinates::Coordinates, minimum_spanning_tree, prim, vectorised::PLAIN};
 
 /// SplitMix64 (Steele, Lea, Flood 2014), in [−1, 1).
 struct Numbers(u64);
@@ -252,4 +252,32 @@ fn one_answer_on_any_number_of_threads() {
     for threads in [2, 2, 3, 4] {
         assert!(edges(threads) == alone, "{threads} threads");
     }
+}
+
+/// On one thread, and on that thread without vector instructions.
+fn plainly<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        PLAIN.set(true);
+        work()
+    })
+}
+
+#[test]
+fn without_vector_instructions_the_tree_is_the_same() {
+    let bits = |points: &[Vector3<f64>]| {
+        let tree = minimum_spanning_tree(&R3::default(), points).unwrap();
+        tree.raw_edges().iter().map(|e| (e.source(), e.target(), e.weight.to_bits())).collect::<Vec<_>>()
+    };
+    // Squares and sums of integers are exact however they are rounded: not one bit differs, ties and all.
+    let mut numbers = Numbers(8);
+    let grid: Vec<_> = (0..3000).map(|_| (numbers.vector::<3>() * 100.0).map(f64::round)).collect();
+    assert_eq!(bits(&grid).len(), 2999);
+    assert!(plainly(|| bits(&grid)) == bits(&grid));
+    let points: Vec<_> = (0..1000).map(|_| numbers.vector::<3>()).collect();
+    let poses: Vec<_> = points.iter().map(|p| Isometry3::from_parts((*p).into(), numbers.rotation())).collect();
+    plainly(|| {
+        assert_same_tree(&R3::default(), &points);
+        assert_same_tree(&Se3::default(), &poses);
+    });
 }

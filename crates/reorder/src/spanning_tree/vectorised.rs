@@ -10,6 +10,12 @@ pub(super) trait Task {
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
+#[cfg(test)]
+thread_local! {
+    /// Whether this thread does without vector instructions, as other processors must.
+    pub(super) static PLAIN: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
 /// Runs the task with AVX-512, or AVX2 and FMA, where there are such; both round alike.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "the compiler cannot see that the processor was asked")]
@@ -21,6 +27,10 @@ pub(super) fn run<T: Task>(task: T) -> T::Output {
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
     fn widest<T: Task>(task: T) -> T::Output {
         task.run::<true>()
+    }
+    #[cfg(test)]
+    if PLAIN.get() {
+        return task.run::<false>();
     }
     let fused = std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
     let masked = std::is_x86_feature_detected!("avx512f")
