@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use planner::manipulator::Robot;
-use planner::manipulator::audit_from;
+use planner::manipulator::{TimingOptions, audit_from};
 use planner::manipulator::nalgebra::DVector;
 use planner::se3_geom::xyzw_from_rotation;
 use planner::{Config, Input, Job, Motion, OnRefusal, Outcome, Output, RawPose, Refusal, Session};
@@ -54,7 +54,9 @@ fn on_track(session: &mut Session, motion: &Motion, now_s: f64) {
 
 /// A session whose robot set out at [`BEGAN_S`].
 fn under_way(config: Config) -> (Session, Motion) {
-    let mut session = Session::new(Robot::shipped("ur5e").unwrap(), config);
+    // Slow enough for everything that is to happen on the way.
+    let timing = TimingOptions { acceleration_scale: 0.3, ..config.timing };
+    let mut session = Session::new(Robot::shipped("ur5e").unwrap(), Config { timing, ..config });
     let home = DVector::from_column_slice(&HOME);
     let standing = measured(&session, &home, &DVector::zeros(6));
     session.handle(BEGAN_S, standing);
