@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::curve::Curve;
 use crate::independence::look_independent;
-use crate::smoothness::{Smoothness, smoothness};
+use crate::smoothness::{MISS_TO_GAP, Smoothness, smoothness};
 use crate::sweep::{Sweep, sweep};
 use crate::topology::beyond_ends;
 
@@ -67,6 +67,9 @@ pub struct Certificate {
     pub roughness: f64,
     /// Nine of ten points miss that parabola by no more than this share of the shortest gap around: noise, or sparse samples.
     pub noise: f64,
+    /// Half of the points miss it by no more than this share. Noise is everywhere and makes both shares large; a curve that is
+    /// sampled too sparsely in its bends only makes the other one large.
+    pub usual_miss: f64,
     /// How many points in a row turn back against the turn before. A smooth curve does so at inflections only.
     pub zigzag: usize,
     /// Distance of the ends (open), or closing gap (closed), in units of the longest other gap.
@@ -106,9 +109,11 @@ impl Certificate {
         ]
     }
 
-    /// Whether the points look like a clean sample of a smooth curve, so that searches can tell one order from another.
+    /// Whether the points look like a clean sample of a smooth curve, so that searches can tell one order from another: next to
+    /// none is off by so much that it could have changed places, or few enough are and no stretch turns back like noise.
     pub(crate) fn is_clean(&self) -> bool {
-        self.noise <= CLEAN_NOISE && self.zigzag <= CLEAN_ZIGZAG
+        let few_miss = self.noise <= CLEAN_NOISE || self.usual_miss <= MISS_TO_GAP;
+        self.noise <= MISS_TO_GAP || (few_miss && self.zigzag <= CLEAN_ZIGZAG)
     }
 
     /// Figures where the order is no curve: nothing holds.
@@ -130,13 +135,14 @@ impl Certificate {
             roughness: f64::MAX,
             zigzag: 0,
             noise: f64::MAX,
+            usual_miss: f64::MAX,
             opening: None,
         }
     }
 
     pub(crate) fn of_curve<M: Manifold>(curve: &Curve<M>, gaps: &[f64], found: &Sweep) -> Self {
         let max_gap = gaps.iter().copied().fold(0.0, f64::max);
-        let Smoothness { turn_rad, roughness, zigzag, noise } = smoothness(curve, found.reach);
+        let Smoothness { turn_rad, roughness, zigzag, noise, usual_miss } = smoothness(curve, found.reach);
         let epsilons = edge_epsilons(gaps, found);
         let weakest = (0..epsilons.len()).max_by(|&a, &b| epsilons[a].total_cmp(&epsilons[b]));
         let last = curve.len() - 1;
@@ -153,6 +159,7 @@ impl Certificate {
             roughness,
             zigzag,
             noise,
+            usual_miss,
             opening: finite(curve.distance(last, 0) / longest_inside),
             ..Self::of_no_curve(curve.manifold, max_gap)
         }

@@ -39,15 +39,18 @@
 //! Where something in this list speaks against the order (and there are no more than [`MOST_REPAIRED_UNASKED`] points), the order
 //! is sought again as the path that is short and turns little ([`Method::Repaired`]): by local search with 3 units of length for a
 //! unit of turning. It is judged by searches that should find the same, at other prices of turning (0, 1, 8), from another start, and
-//! at other weights: every place where one of them differs is a doubt. If none differs, the samples are clean (nine of ten points miss
-//! the parabola through their neighbours by less than a quarter of a gap, and at no more than five points in a row does the order turn
-//! back), and no more than twelve points in a row are in dispute, as where a curve crosses itself, doubts about neighbourhoods are taken
+//! at other weights: every place where one of them differs is a doubt. If none differs, the samples are clean, and no more than twelve points in a row are in dispute, as where a curve crosses itself, doubts about neighbourhoods are taken
 //! back, and the order is plausible. On noisy samples, and where a curve runs back beside itself, they stand, since there all searches
 //! agree on one wrong order too often.
 //!
 //! An order by a method that was asked for ([`MethodChoice`]) is also doubted where the method's edges are no single curve, and where the
 //! minimum spanning tree has others. Several curves ordered apart ([`ComponentsChoice`]) are trusted as the least of them is; with
 //! outliers beside them, nothing is certified. Every doubt says between which two points one more would settle it.
+//!
+//! Samples are clean where nine of ten points miss the parabola through their neighbours by at most a tenth of a gap, which cannot have
+//! swapped two points; or nine of ten by at most a quarter, or half of them by at most a tenth, while at no more than five points in
+//! a row the order turns back. Noise is everywhere, and moves the median as it moves the rest; a curve that is sampled too sparsely
+//! in its bends misses there and nowhere else.
 //!
 //! What it cannot see: a curve that runs back along itself while its points happen to fall evenly between each other, or
 //! one that leaves out a stretch and goes straight on. No distance tells those from an honest curve.

@@ -15,19 +15,21 @@ pub(crate) struct Smoothness {
     pub(crate) zigzag: usize,
     /// Nine of ten points miss by no more than this share of the shortest gap around.
     pub(crate) noise: f64,
+    /// Half of the points miss by no more than this share.
+    pub(crate) usual_miss: f64,
 }
 
 /// A third derivative by length of up to this many times 1/reach² is smooth.
 const THIRD_DERIVATIVE: f64 = 20.0;
 /// A miss of at most this share of the shortest gap around cannot have swapped two points.
-const MISS_TO_GAP: f64 = 0.1;
+pub(crate) const MISS_TO_GAP: f64 = 0.1;
 
 /// A miss of at most this share of the shorter gap turns nowhere: the points lie on a geodesic, up to rounding in coordinates of
 /// up to a thousand million gaps.
 const STRAIGHT: f64 = 1e-6;
 
 pub(crate) fn smoothness<M: Manifold>(curve: &Curve<M>, reach: f64) -> Smoothness {
-    let mut found = Smoothness { turn_rad: 0.0, roughness: 0.0, zigzag: 0, noise: 0.0 };
+    let mut found = Smoothness { turn_rad: 0.0, roughness: 0.0, zigzag: 0, noise: 0.0, usual_miss: 0.0 };
     let mut misses = Vec::with_capacity(curve.len());
     // Whether the order turns back between a point and the next.
     let mut back = vec![false; curve.len()];
@@ -54,10 +56,10 @@ pub(crate) fn smoothness<M: Manifold>(curve: &Curve<M>, reach: f64) -> Smoothnes
         *back = turns(here, g0, g1) && turns(there, g1, g2) && curve.manifold.inner(q, here, there) < 0.0;
     }
     found.zigzag = longest_run(&back, curve.closed);
-    let most = misses.len() * 9 / 10;
-    if most < misses.len() {
-        found.noise = *misses.select_nth_unstable_by(most, f64::total_cmp).1;
-    }
+    misses.sort_unstable_by(f64::total_cmp);
+    let at_rank = |rank: usize| misses.get(rank).copied().unwrap_or(0.0);
+    found.noise = at_rank(misses.len() * 9 / 10);
+    found.usual_miss = at_rank(misses.len() / 2);
     found
 }
 

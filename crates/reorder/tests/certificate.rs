@@ -83,6 +83,7 @@ fn json_has_the_fixed_shape() {
         "roughness",
         "turn_rad",
         "usable_reach",
+        "usual_miss",
         "weakest",
         "zigzag",
     ];
