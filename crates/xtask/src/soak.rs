@@ -10,10 +10,12 @@ use crate::failure::{Failure, Outcome};
 /// What can be run at length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Soak {
-    /// Random curves, shuffled, planned and judged
+    /// Random pose sets all over the workspace of each arm: planned, or refused for a reason that holds
     Plans,
     /// Random curves that arrive while the arm executes others: so many hand-overs on each arm
     Handovers,
+    /// Random curves, shuffled, planned and judged
+    Shuffled,
     /// Random smooth curves, sampled, shuffled and ordered: success by density, wrong orders by verdict
     Orders,
     /// Random coordinates, ordered: the number is how many seconds
@@ -26,6 +28,7 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
     match name {
         Soak::Plans => run_test(layout, "planner", "random_plans", amount),
         Soak::Handovers => run_test(layout, "planner", "handover", amount),
+        Soak::Shuffled => run_test(layout, "planner", "shuffled_plans", amount),
         Soak::Orders => run_test(layout, "reorder", "random_orders", amount),
         Soak::FuzzOrders => fuzz(layout, "orders", amount),
         Soak::FuzzTables => fuzz(layout, "tables", amount),
