@@ -31,8 +31,10 @@
 //! ```
 
 mod audit;
+mod bounds;
 mod branches;
 mod chain;
+mod constant_speed;
 mod continuation;
 mod dynamics;
 mod error;
@@ -41,17 +43,19 @@ mod ik;
 mod inertia;
 mod joint_path;
 mod optimise;
+mod options;
 mod quintic;
 mod quintic_spline;
 mod rest_to_rest;
 mod robot;
+mod rows;
 mod sampling;
 mod speed_profile;
 mod timing;
 mod trajectory;
 mod urdf;
 
-pub use audit::{Audit, MaxRatio, audit};
+pub use audit::{Audit, AuditRules, MaxRatio, audit, audit_under};
 pub use chain::Chain;
 pub use dynamics::{Drive, Dynamics, GRAVITY_M_S2};
 pub use error::ManipulatorError;
@@ -60,8 +64,9 @@ pub use ik::{IkOptions, solve_ik};
 pub use inertia::Inertia;
 pub use joint_path::JointPath;
 pub use nalgebra;
+pub use options::{JointLimits, TimingOptions};
 pub use quintic_spline::EndDerivatives;
 pub use rest_to_rest::rest_to_rest;
 pub use robot::{Limits, Robot};
-pub use timing::{TimedPath, TimingOptions, time_path};
+pub use timing::{TimedPath, time_path};
 pub use trajectory::{JointPoint, JointTrajectory};

@@ -1,7 +1,9 @@
 //! Poses to trajectory, as one pure function.
 
 use manipulator::nalgebra::DVector;
-use manipulator::{Audit, JointTrajectory, ManipulatorError, Robot, TimedPath, audit, follow, rest_to_rest, time_path};
+use manipulator::{
+    Audit, JointTrajectory, ManipulatorError, Robot, TimedPath, audit_under, follow, rest_to_rest, time_path,
+};
 use reorder::{Ordering, Topology, order_poses};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, SplineError, centripetal_knots};
 
@@ -104,7 +106,7 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
 
     let pose_times_s = times_by_input(&ordering, &distinct, &timed.knot_times_s, approach_s);
     let (pose_error_max_m, pose_error_max_rad) = accuracy(robot, config, poses, &trajectory, &pose_times_s)?;
-    let audit = passed_audit(robot, &trajectory)?;
+    let audit = passed_audit(robot, config, &trajectory)?;
     Ok(Plan { ordering, spline, trajectory, pose_times_s, audit, pose_error_max_m, pose_error_max_rad, approach_s })
 }
 
@@ -217,8 +219,8 @@ fn times_by_input(ordering: &Ordering, distinct: &[usize], knot_times_s: &[f64],
 }
 
 /// The last gate before a robot.
-fn passed_audit(robot: &Robot, trajectory: &JointTrajectory) -> Result<Audit, Refusal> {
-    let audit = audit(robot, trajectory);
+fn passed_audit(robot: &Robot, config: &Config, trajectory: &JointTrajectory) -> Result<Audit, Refusal> {
+    let audit = audit_under(robot, trajectory, config.timing.audit_rules());
     if audit.limits_ok { Ok(audit) } else { Err(Refusal::Limits(Box::new(audit))) }
 }
 
