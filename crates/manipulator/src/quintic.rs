@@ -93,8 +93,8 @@ impl Quintic {
             }
         }
         let (mut least, mut greatest, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
-        for i in 0..=degree {
-            let value: f64 = (0..=i).map(|j| coefficients[j] * CHOOSE[i][j] / CHOOSE[degree][j]).sum();
+        for (i, row) in CHOOSE.iter().enumerate().take(degree + 1) {
+            let value: f64 = (0..=i).map(|j| coefficients[j] * row[j] / CHOOSE[degree][j]).sum();
             (least, greatest, sum) = (least.min(value), greatest.max(value), sum + value);
         }
         let scale = self.h.recip().powi(order as i32);
