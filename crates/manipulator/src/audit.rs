@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::robot::{Limits, Robot};
+use crate::bounds::Bounds;
+use crate::robot::Robot;
 use crate::trajectory::{JointPoint, JointTrajectory};
 
 /// Peak over limit, the greatest of all joints; at most 1 where the limit holds.
@@ -14,15 +15,24 @@ pub struct MaxRatio {
     pub acceleration: f64,
     /// Of joint jerks.
     pub jerk: f64,
+    /// Of joint torques; none where the robot's inertias or all its effort limits are unknown.
+    pub torque: Option<f64>,
+    /// Of the tool's speed, where it has a limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tool_speed: Option<f64>,
+    /// Of the tool's acceleration, where it has a limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tool_acceleration: Option<f64>,
 }
 
 /// What an audit of a trajectory found.
 ///
-/// Peaks are those of the quintics between the points, found exactly (extremes of polynomials), so that they are at least those on
-/// any grid.
+/// Peaks of joint velocity, acceleration and jerk are those of the quintics between the points, found exactly (extremes of
+/// polynomials), so that they are at least those on any grid. Torques and the tool's motion are sampled ten times between points.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Audit {
-    /// Whether every check below holds: ratios at most 1, margin not negative, times increase, the start as it must be, rest at the end.
+    /// Whether every check below holds: ratios at most 1 (of what the rules ask for), margin not negative, times increase, the start as
+    /// it must be, rest at the end.
     pub limits_ok: bool,
     /// Peak over limit.
     pub max_ratio: MaxRatio,
@@ -39,28 +49,43 @@ pub struct Audit {
     pub points: usize,
 }
 
-/// Peak over limit of one joint between two points.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Peaks {
-    /// Velocity, acceleration, jerk.
-    pub(crate) ratios: [f64; 3],
-    pub(crate) margin: f64,
+/// Which limits decide whether a trajectory is legal; position, velocity and acceleration always do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AuditRules {
+    /// Whether jerk limits count.
+    pub jerk: bool,
+    /// Whether effort limits count.
+    pub torque: bool,
+    /// Greatest speed of the tool frame's origin in m/s.
+    pub tool_speed_m_s: Option<f64>,
+    /// Greatest acceleration of the tool frame's origin in m/s².
+    pub tool_acceleration_m_s2: Option<f64>,
 }
 
-/// Judges the trajectory that a controller would execute against the robot's limits. Numbers that are not finite fail every check.
+impl Default for AuditRules {
+    /// Every limit of the joints, none of the tool.
+    fn default() -> Self {
+        Self { jerk: true, torque: true, tool_speed_m_s: None, tool_acceleration_m_s2: None }
+    }
+}
+
+/// Judges the trajectory that a controller would execute against all limits of the robot's joints. Numbers that are not finite fail
+/// every check.
 pub fn audit(robot: &Robot, trajectory: &JointTrajectory) -> Audit {
-    judge(robot, trajectory, None)
+    audit_under(robot, trajectory, AuditRules::default(), None)
 }
 
 /// [`audit`] of a trajectory that takes over from a moving robot: in place of rest it must begin in exactly the state `from`, whose
 /// time does not count.
 pub fn audit_from(robot: &Robot, trajectory: &JointTrajectory, from: &JointPoint) -> Audit {
-    judge(robot, trajectory, Some(from))
+    audit_under(robot, trajectory, AuditRules::default(), Some(from))
 }
 
-fn judge(robot: &Robot, trajectory: &JointTrajectory, from: Option<&JointPoint>) -> Audit {
+/// Judges the trajectory that a controller would execute against the robot's limits, as far as the rules say; it must begin at rest, or
+/// in the state `from` as for [`audit_from`].
+pub fn audit_under(robot: &Robot, trajectory: &JointTrajectory, rules: AuditRules, from: Option<&JointPoint>) -> Audit {
     if trajectory.joint_names == robot.chain.joint_names() {
-        return against_from(&robot.limits, trajectory, from);
+        return against_from(&Bounds::new(robot, robot.limits.clone(), rules), trajectory, from).audit;
     }
     // Judged joint by joint in order: under other names that would be somebody else's limits.
     Audit { duration_s: trajectory.duration_s(), points: trajectory.points.len(), ..Audit::failed() }
@@ -69,9 +94,17 @@ fn judge(robot: &Robot, trajectory: &JointTrajectory, from: Option<&JointPoint>)
 impl Audit {
     /// Of a trajectory that cannot be judged.
     fn failed() -> Self {
+        let max_ratio = MaxRatio {
+            velocity: f64::INFINITY,
+            acceleration: f64::INFINITY,
+            jerk: f64::INFINITY,
+            torque: None,
+            tool_speed: None,
+            tool_acceleration: None,
+        };
         Self {
             limits_ok: false,
-            max_ratio: MaxRatio { velocity: f64::INFINITY, acceleration: f64::INFINITY, jerk: f64::INFINITY },
+            max_ratio,
             position_margin: f64::NEG_INFINITY,
             times_increase: false,
             starts_and_ends_at_rest: false,
@@ -81,18 +114,27 @@ impl Audit {
     }
 }
 
-pub(crate) fn against(limits: &Limits, trajectory: &JointTrajectory) -> Audit {
-    against_from(limits, trajectory, None)
+/// An audit, and by how much the trajectory must be stretched in time for its peaks to come down to the limits.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Found {
+    pub(crate) audit: Audit,
+    /// Infinite where no stretching helps.
+    pub(crate) slowdown: f64,
 }
 
-pub(crate) fn against_from(limits: &Limits, trajectory: &JointTrajectory, from: Option<&JointPoint>) -> Audit {
+pub(crate) fn against(bounds: &Bounds<'_>, trajectory: &JointTrajectory) -> Found {
+    against_from(bounds, trajectory, None)
+}
+
+pub(crate) fn against_from(bounds: &Bounds<'_>, trajectory: &JointTrajectory, from: Option<&JointPoint>) -> Found {
     let points = &trajectory.points;
+    let limits = &bounds.limits;
     let dof = limits.lower.len();
     let times_increase = trajectory.is_well_formed(dof);
     let mut audit =
         Audit { times_increase, duration_s: trajectory.duration_s(), points: points.len(), ..Audit::failed() };
     if !times_increase {
-        return audit;
+        return Found { audit, slowdown: f64::INFINITY };
     }
     let at_rest = |p: &JointPoint| p.velocities.iter().chain(&p.accelerations).all(|&x| x == 0.0);
     let first = &points[0];
@@ -105,39 +147,32 @@ pub(crate) fn against_from(limits: &Limits, trajectory: &JointTrajectory, from: 
         margin = margin.min(q - limits.lower[j]).min(limits.upper[j] - q);
     }
     for interval in 0..points.len() - 1 {
-        for peaks in peaks(limits, trajectory, interval) {
-            margin = margin.min(peaks.margin);
-            ratios.iter_mut().zip(peaks.ratios).for_each(|(worst, ratio)| *worst = worst.max(ratio));
+        for (joint, quintic) in trajectory.quintics(interval).enumerate() {
+            bounds.raise(joint, &quintic, &mut ratios, &mut margin);
         }
     }
-    audit.max_ratio = MaxRatio { velocity: ratios[0], acceleration: ratios[1], jerk: ratios[2] };
+    let sampled = bounds.sampled(trajectory);
+    audit.max_ratio = MaxRatio {
+        velocity: ratios[0],
+        acceleration: ratios[1],
+        jerk: ratios[2],
+        torque: sampled.torque,
+        tool_speed: sampled.tool_speed,
+        tool_acceleration: sampled.tool_acceleration,
+    };
     audit.position_margin = margin;
+    let rules = &bounds.rules;
+    let counting = [
+        Some(ratios[0]),
+        Some(ratios[1]),
+        Some(ratios[2]).filter(|_| rules.jerk),
+        sampled.torque.filter(|_| rules.torque),
+        sampled.tool_speed,
+        sampled.tool_acceleration,
+    ];
+    let within = counting.into_iter().flatten().all(|ratio| ratio <= 1.0);
     // Inverse kinematics may end on a limit up to rounding.
-    audit.limits_ok = ratios.iter().all(|&ratio| ratio <= 1.0) && margin >= -1e-9 && audit.starts_and_ends_at_rest;
-    audit
-}
-
-/// The peaks of every joint between point `interval` and the next.
-pub(crate) fn peaks<'a>(
-    limits: &'a Limits,
-    trajectory: &'a JointTrajectory,
-    interval: usize,
-) -> impl Iterator<Item = Peaks> + 'a {
-    trajectory.quintics(interval).enumerate().map(|(j, quintic)| {
-        let ranges = quintic.ranges();
-        // Finite points can be so large that the polynomial between them overflows; nothing can be said of it then.
-        if !ranges.iter().all(|(low, high)| low.is_finite() && high.is_finite()) {
-            return Peaks { ratios: [f64::INFINITY; 3], margin: f64::NEG_INFINITY };
-        }
-        let [position, velocity, acceleration, jerk] = ranges;
-        let peak = |(low, high): (f64, f64)| high.max(-low);
-        Peaks {
-            ratios: [
-                peak(velocity) / limits.velocity[j],
-                peak(acceleration) / limits.acceleration[j],
-                peak(jerk) / limits.jerk[j],
-            ],
-            margin: (position.0 - limits.lower[j]).min(limits.upper[j] - position.1),
-        }
-    })
+    audit.limits_ok = within && margin >= -1e-9 && audit.starts_and_ends_at_rest;
+    let slowdown = ratios[0].max(ratios[1].sqrt()).max(if rules.jerk { ratios[2].cbrt() } else { 0.0 });
+    Found { audit, slowdown: slowdown.max(sampled.slowdown) }
 }

@@ -1,6 +1,6 @@
 //! Forward kinematics and Jacobian of a serial chain as a product of exponentials.
 
-use nalgebra::{DVector, Matrix6xX, Quaternion, UnitQuaternion, Vector6};
+use nalgebra::{DVector, Matrix6xX, Quaternion, UnitQuaternion, Vector3, Vector6};
 use se3_geom::{Pose, Twist};
 
 use crate::error::{ManipulatorError, Result};
@@ -173,6 +173,20 @@ impl Chain {
             beyond = beyond + own;
         }
         sum
+    }
+
+    /// Velocity and acceleration of the tool frame's origin, in the axes of the tool frame: v and v̇ + ω × v of the body twist and its
+    /// derivative.
+    pub(crate) fn tool_motion(
+        &self,
+        q: &DVector<f64>,
+        rates: &DVector<f64>,
+        accelerations: &DVector<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        let jacobian = self.body_jacobian(q);
+        let twist = Twist::from_vector(&(&jacobian * rates));
+        let change = Twist::from_vector(&(&jacobian * accelerations + Self::velocity_product(&jacobian, rates)));
+        (twist.linear, change.linear + twist.angular.cross(&twist.linear))
     }
 }
 

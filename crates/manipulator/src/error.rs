@@ -216,6 +216,28 @@ pub enum ManipulatorError {
         /// What it says.
         reason: String,
     },
+    /// A joint cannot even hold the arm still.
+    #[error("joint {joint:?} needs {needed:.2} N·m to hold the arm on the path, but its limit is {effort:.2} N·m")]
+    HoldingTorque {
+        /// The joint.
+        joint: String,
+        /// Torque against gravity and dry friction, in N·m (N for prismatic joints).
+        needed: f64,
+        /// Its limit.
+        effort: f64,
+    },
+    /// The limits do not let the tool keep a constant speed.
+    #[error(
+        "a constant tool speed of {wanted_m_s:.4} m/s cannot be held near pose {pose}: the limits allow {greatest_m_s:.4} m/s there"
+    )]
+    ConstantSpeed {
+        /// Index of the pose at or before the narrowest place.
+        pose: usize,
+        /// As asked for.
+        wanted_m_s: f64,
+        /// What can be held from ramp to ramp.
+        greatest_m_s: f64,
+    },
     /// A configuration is beyond a position limit.
     #[error("{what}: {joint} is at {value:.4}, beyond its limits {lower:.4} to {upper:.4} (rad or m)")]
     BeyondLimits {
@@ -250,7 +272,7 @@ pub enum ManipulatorError {
     },
     /// Slowing down did not make the trajectory legal; it is withheld.
     #[error(
-        "the trajectory would break limits after every slowdown (velocity {velocity:.4}, acceleration {acceleration:.4}, jerk {jerk:.4} of the limit, position margin {position_margin:.2e}), so there is none"
+        "the trajectory would break limits after every slowdown (velocity {velocity:.4}, acceleration {acceleration:.4}, jerk {jerk:.4}, torque {torque:.4} of the limit, position margin {position_margin:.2e}), so there is none"
     )]
     LimitsNotMet {
         /// Peak over limit.
@@ -259,6 +281,8 @@ pub enum ManipulatorError {
         acceleration: f64,
         /// Peak over limit.
         jerk: f64,
+        /// Peak over limit, 0 where it is not known.
+        torque: f64,
         /// Least distance to a position limit, in rad or m; negative beyond it.
         position_margin: f64,
     },
@@ -275,6 +299,7 @@ impl ManipulatorError {
             | Self::JointLimit { pose, .. }
             | Self::Singular { pose, .. }
             | Self::Jump { pose, .. }
+            | Self::ConstantSpeed { pose, .. }
             | Self::PathTolerance { pose, .. } => Some(*pose),
             _ => None,
         }

@@ -2,14 +2,15 @@
 
 use nalgebra::DVector;
 
-use crate::audit::{against_from, peaks};
+use crate::audit::against_from;
+use crate::bounds::Bounds;
 use crate::error::Result;
+use crate::options::TimingOptions;
 use crate::quintic::Quintic;
-use crate::rest_to_rest::least_duration;
+use crate::rest_to_rest::{least_duration, not_met};
 use crate::robot::{Limits, Robot};
 use crate::sampling::Sampling;
-use crate::slowing::{check_running, not_met, slow_to_stop};
-use crate::timing::TimingOptions;
+use crate::slowing::{check_running, slow_to_stop};
 use crate::trajectory::{JointPoint, JointTrajectory};
 
 /// The move that takes over from the trajectory `running` at its time `at_s` and leads to rest at `goal`, of shape (dof). It begins at
@@ -28,7 +29,7 @@ pub fn connect(
     goal: &DVector<f64>,
     options: &TimingOptions,
 ) -> Result<JointTrajectory> {
-    let limits = options.limits(robot)?;
+    let bounds = options.bounds(robot)?;
     check_running(robot, running, at_s)?;
     robot.check_within_limits("the goal of the hand-over", goal)?;
     let stop = slow_to_stop(robot, running, at_s, options)?;
@@ -37,18 +38,18 @@ pub fn connect(
     let shorter =
         |duration: f64, best: &Option<JointTrajectory>| best.as_ref().is_none_or(|b| duration < b.duration_s());
     let sampling = Sampling { rate_hz: options.rate_hz, joint_names: robot.chain.joint_names() };
-    let over = Overlay::new(&stop, goal, &limits);
+    let over = Overlay::new(&stop, goal, &bounds.limits);
     let longest = stop.duration_s() + over.least_duration;
-    if let Some(duration) = shortest_quintic(&limits, &from, goal, longest) {
+    if let Some(duration) = shortest_quintic(&bounds, &from, goal, longest) {
         let direct = sampled_quintic(&from, goal, duration, &sampling)?;
-        if against_from(&limits, &direct, Some(&from)).limits_ok {
+        if against_from(&bounds, &direct, Some(&from)).audit.limits_ok {
             best = Some(direct);
         }
     }
     for (begin, duration) in over.attempts() {
         if shorter(stop.points[begin].time_s + duration, &best) {
             let overlaid = over.trajectory(begin, duration, &sampling)?;
-            if is_legal(&limits, &overlaid) && against_from(&limits, &overlaid, Some(&from)).limits_ok {
+            if is_legal(&bounds, &overlaid) && against_from(&bounds, &overlaid, Some(&from)).audit.limits_ok {
                 best = Some(overlaid);
                 break;
             }
@@ -58,7 +59,7 @@ pub fn connect(
         Some(best) => Ok(best),
         None => {
             let last = over.trajectory(stop.points.len() - 1, over.least_duration, &sampling)?;
-            Err(not_met(&against_from(&limits, &last, Some(&from))))
+            Err(not_met(&against_from(&bounds, &last, Some(&from)).audit))
         }
     }
 }
@@ -67,7 +68,7 @@ pub fn connect(
 const FINER: f64 = 1.02;
 
 /// The least duration up to `longest` for which the quintic from a state to rest at `goal` keeps the limits.
-fn shortest_quintic(limits: &Limits, from: &JointPoint, goal: &DVector<f64>, longest: f64) -> Option<f64> {
+fn shortest_quintic(bounds: &Bounds<'_>, from: &JointPoint, goal: &DVector<f64>, longest: f64) -> Option<f64> {
     let mut duration = 0.05;
     while duration < longest {
         let rest = vec![0.0; goal.len()];
@@ -78,7 +79,7 @@ fn shortest_quintic(limits: &Limits, from: &JointPoint, goal: &DVector<f64>, lon
             accelerations: rest,
         };
         let whole = JointTrajectory { joint_names: Vec::new(), points: vec![from.clone(), to] };
-        if is_legal(limits, &whole) {
+        if is_legal(bounds, &whole) {
             return Some(duration);
         }
         duration *= FINER;
@@ -116,9 +117,13 @@ fn resting(time_s: f64, at: &DVector<f64>) -> JointPoint {
 }
 
 /// Whether positions, velocities, accelerations and jerks keep their limits; gives up at the first that does not.
-fn is_legal(limits: &Limits, trajectory: &JointTrajectory) -> bool {
+fn is_legal(bounds: &Bounds<'_>, trajectory: &JointTrajectory) -> bool {
+    let (mut ratios, mut margin) = ([0.0; 3], f64::INFINITY);
     (0..trajectory.points.len() - 1).all(|interval| {
-        peaks(limits, trajectory, interval).all(|p| p.margin >= -1e-9 && p.ratios.iter().all(|&ratio| ratio <= 1.0))
+        trajectory.quintics(interval).enumerate().all(|(joint, quintic)| {
+            bounds.raise(joint, &quintic, &mut ratios, &mut margin);
+            margin >= -1e-9 && ratios.iter().all(|&ratio| ratio <= 1.0)
+        })
     })
 }
 

@@ -5,23 +5,28 @@ use copp::solver::topp2_ra::{ReachSet2OptionsBuilder, Topp2ProblemBuilder, s_to_
 use copp::solver::topp3_socp::{ClarabelOptionsBuilder, Topp3ProblemBuilder, Topp3Profile, s_to_t_topp3, topp3_socp};
 use nalgebra::{DMatrix, DVector};
 
+use crate::bounds::Bounds;
 use crate::error::{ManipulatorError, Result};
 use crate::joint_path::JointPath;
-use crate::robot::Limits;
+use crate::rows::{Derivatives, ToolRows, TorqueRows};
 use crate::speed_profile::SpeedProfile;
 
 /// The floor under the speeds about which the jerk constraints are linearised, as a part of the greatest squared speed.
 const LINEARISATION_FLOOR: f64 = 1e-3;
+/// Accuracy asked of the cone programmes; the audit's corrections are a hundred times larger.
+const SOLVER_TOLERANCE: f64 = 1e-6;
 
 /// Gridpoints on a path with what the joints may do at each, scaled so that the speed along the path is about 1.
 pub(crate) struct Grid {
     /// Path parameters of the gridpoints.
     pub(crate) parameters: Vec<f64>,
     /// Optimiser's parameter = scale·(path parameter − first).
-    pub(crate) scale: f64,
-    derivatives: [DMatrix<f64>; 4],
+    scale: f64,
+    derivatives: Derivatives,
     /// Velocity, acceleration and jerk limits, joint × gridpoint.
     pub(crate) limits: [DMatrix<f64>; 3],
+    pub(crate) tool: Option<ToolRows>,
+    pub(crate) torque: Option<TorqueRows>,
 }
 
 fn failed(what: &str) -> impl Fn(CoppError) -> ManipulatorError + '_ {
@@ -29,8 +34,15 @@ fn failed(what: &str) -> impl Fn(CoppError) -> ManipulatorError + '_ {
 }
 
 impl Grid {
-    pub(crate) fn new(path: &JointPath, parameters: Vec<f64>, scale: f64, limits: &Limits) -> Result<Self> {
-        let (dof, n) = (limits.lower.len(), parameters.len());
+    /// `tool_speed`, in m/s, is the tool's greatest; torques are left out until [`Grid::limit_torque`].
+    pub(crate) fn new(
+        path: &JointPath,
+        parameters: Vec<f64>,
+        scale: f64,
+        bounds: &Bounds<'_>,
+        tool_speed: Option<f64>,
+    ) -> Result<Self> {
+        let (dof, n) = (bounds.limits.lower.len(), parameters.len());
         let mut derivatives = [(); 4].map(|()| DMatrix::zeros(dof, n));
         for (k, &s) in parameters.iter().enumerate() {
             let mut factor = 1.0;
@@ -44,15 +56,29 @@ impl Grid {
             return Err(ManipulatorError::NonFinite { what: "the joint path" });
         }
         let spread = |v: &DVector<f64>| DMatrix::from_fn(dof, n, |joint, _| v[joint]);
-        let limits = [spread(&limits.velocity), spread(&limits.acceleration), spread(&limits.jerk)];
-        Ok(Self { parameters, scale, derivatives, limits })
+        let limits = [&bounds.limits.velocity, &bounds.limits.acceleration, &bounds.limits.jerk].map(spread);
+        let tool_is_limited = tool_speed.is_some() || bounds.rules.tool_acceleration_m_s2.is_some();
+        let tool = tool_is_limited.then(|| ToolRows::new(bounds, &derivatives, tool_speed));
+        Ok(Self { parameters, scale, derivatives, limits, tool, torque: None })
+    }
+
+    /// From here on torques count too.
+    ///
+    /// # Errors
+    /// [`ManipulatorError::HoldingTorque`].
+    pub(crate) fn limit_torque(&mut self, bounds: &Bounds<'_>) -> Result<()> {
+        if let (None, Some(dynamics)) = (&self.torque, bounds.dynamics) {
+            self.torque = Some(TorqueRows::new(bounds, dynamics, &self.derivatives)?);
+        }
+        Ok(())
     }
 
     fn stations(&self) -> Vec<f64> {
         self.parameters.iter().map(|s| (s - self.parameters[0]) * self.scale).collect()
     }
 
-    fn robot(&self, with_jerk: bool) -> Result<copp::robot::Robot<usize>> {
+    /// The problem, with what is not linear in it taken at the squared speeds `about`.
+    fn robot(&self, with_jerk: bool, about: Option<&[f64]>) -> Result<copp::robot::Robot<usize>> {
         let build = || -> std::result::Result<copp::robot::Robot<usize>, CoppError> {
             let n = self.parameters.len();
             let mut robot = copp::robot::Robot::with_capacity(self.limits[0].nrows(), n);
@@ -67,17 +93,35 @@ impl Grid {
             if with_jerk {
                 robot.with_axial_jerk(&jerk.as_view(), &below(jerk).as_view(), 0)?;
             }
+            if let Some(tool) = &self.tool {
+                tool.add(&mut robot.constraints)?;
+            }
+            if let Some(torque) = &self.torque {
+                // The scale makes speeds about 1.
+                let ones = vec![1.0; n];
+                torque.add(&mut robot.constraints, about.unwrap_or(&ones))?;
+            }
             Ok(robot)
         };
         build().map_err(failed("the path was refused"))
     }
 
-    /// Squared speeds ṡ² at the gridpoints and the times, under velocity and acceleration limits alone (TOPP2-RA).
-    pub(crate) fn second_order(&self) -> Result<(Vec<f64>, Vec<f64>)> {
-        let robot = self.robot(false)?;
-        let speeds = self.reachability(&robot)?;
+    /// Squared speeds ṡ² at the gridpoints and the times, without jerk limits (TOPP2-RA).
+    pub(crate) fn second_order(&self, about: Option<&[f64]>) -> Result<(Vec<f64>, Vec<f64>)> {
+        let speeds = self.reachability(&self.robot(false, about)?)?;
         let (_, times) = s_to_t_topp2(&self.stations(), &speeds, 0.0).map_err(failed("TOPP2-RA"))?;
         Ok((speeds, times))
+    }
+
+    /// The profile without jerk limits, and its squared speeds.
+    pub(crate) fn second_order_profile(&self, about: Option<&[f64]>) -> Result<(SpeedProfile, Vec<f64>)> {
+        let (squared, times) = self.second_order(about)?;
+        let speeds: Vec<f64> = squared.iter().map(|a| a.max(0.0).sqrt() / self.scale).collect();
+        let stuck = times.windows(2).any(|pair| !(pair[1] > pair[0] && pair[1].is_finite()));
+        if stuck {
+            return Err(ManipulatorError::Timing { reason: "TOPP2-RA: the speed is zero within the path".into() });
+        }
+        Ok((SpeedProfile::of_constant_accelerations(times, &self.parameters, &speeds), squared))
     }
 
     fn reachability(&self, robot: &copp::robot::Robot<usize>) -> Result<Vec<f64>> {
@@ -88,20 +132,25 @@ impl Grid {
         solve().map_err(failed("TOPP2-RA"))
     }
 
-    /// The profile under all limits (TOPP3 as a second-order cone programme, linearised about TOPP2-RA, then about its own solution).
-    pub(crate) fn third_order(&self) -> Result<SpeedProfile> {
-        let mut robot = self.robot(true)?;
-        let seed = floored(self.reachability(&robot)?);
-        let mut solve = |about: &[f64]| -> std::result::Result<Topp3Profile, CoppError> {
-            let options = ClarabelOptionsBuilder::new().allow_almost_solved(true).build()?;
-            let problem =
-                Topp3ProblemBuilder::new(&mut robot, 0, about, (0.0, 0.0), (0.0, 0.0)).build_with_linearization()?;
-            topp3_socp(&problem, &options)
+    /// The profile under all limits, and its squared speeds: TOPP3 as a second-order cone programme, linearised about given squared
+    /// speeds, else about TOPP2-RA. What it returns is legal at the gridpoints whatever it was linearised about.
+    pub(crate) fn third_order(&self, about: Option<&[f64]>) -> Result<(SpeedProfile, Vec<f64>)> {
+        let mut robot = self.robot(true, about)?;
+        let seed = match about {
+            Some(speeds) => floored(speeds.to_vec()),
+            None => floored(self.reachability(&robot)?),
         };
-        let first = solve(&seed).map_err(failed("TOPP3-SOCP"))?;
-        // The first solution is legal already; the second linearisation only makes it faster.
-        let profile = solve(&floored(first.a.clone())).unwrap_or(first);
-        self.in_time(&profile)
+        let mut solve = || -> std::result::Result<Topp3Profile, CoppError> {
+            let mut options = ClarabelOptionsBuilder::new().allow_almost_solved(true);
+            options.clarabel_settings.tol_gap_abs = SOLVER_TOLERANCE;
+            options.clarabel_settings.tol_gap_rel = SOLVER_TOLERANCE;
+            options.clarabel_settings.tol_feas = SOLVER_TOLERANCE;
+            let problem =
+                Topp3ProblemBuilder::new(&mut robot, 0, &seed, (0.0, 0.0), (0.0, 0.0)).build_with_linearization()?;
+            topp3_socp(&problem, &options.build()?)
+        };
+        let profile = solve().map_err(failed("TOPP3-SOCP"))?;
+        Ok((self.in_time(&profile)?, profile.a))
     }
 
     fn in_time(&self, profile: &Topp3Profile) -> Result<SpeedProfile> {

@@ -58,58 +58,53 @@ impl Quintic {
         sum * self.h
     }
 
-    /// Bounds of the derivatives of order 0 to 2 on \[0, h\], least and greatest Bernstein coefficient: not sharp, but quick.
-    pub(crate) fn hulls(&self) -> [(f64, f64); 3] {
-        let [_, c1, c2, c3, c4, c5] = self.coefficients;
-        let rate = self.h.recip();
-        [
-            hull(&self.coefficients, 1.0),
-            hull(&[c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 5.0 * c5], rate),
-            hull(&[2.0 * c2, 6.0 * c3, 12.0 * c4, 20.0 * c5], rate.powi(2)),
-        ]
+    /// The derivative of an order in u, and the factor that makes it one in t.
+    fn derivative(&self, order: usize) -> (Vec<f64>, f64) {
+        let polynomial = (0..order).fold(self.coefficients.to_vec(), |polynomial, _| differentiate(&polynomial));
+        (polynomial, self.h.recip().powi(order as i32))
     }
 
-    /// Least and greatest value of the derivatives of order 0 to 3 on \[0, h\], exactly but for rounding.
-    pub(crate) fn ranges(&self) -> [(f64, f64); 4] {
-        let velocity = differentiate(&self.coefficients);
-        let acceleration = differentiate(&velocity);
-        let jerk = differentiate(&acceleration);
-        let snap = differentiate(&jerk);
+    /// Least and greatest value of the derivative of an order from 0 to 3 on \[0, h\], exactly but for rounding.
+    pub(crate) fn range(&self, order: usize) -> (f64, f64) {
         // Extremes lie where the next derivative vanishes; each list of zeros brackets those of the derivative before.
-        let snap_zeros = zeros_between(&snap, &[]);
-        let jerk_zeros = zeros_between(&jerk, &snap_zeros);
-        let acceleration_zeros = zeros_between(&acceleration, &jerk_zeros);
-        let velocity_zeros = zeros_between(&velocity, &acceleration_zeros);
-        let rate = self.h.recip();
-        [
-            (1.0, &self.coefficients[..], velocity_zeros),
-            (rate, &velocity[..], acceleration_zeros),
-            (rate.powi(2), &acceleration[..], jerk_zeros),
-            (rate.powi(3), &jerk[..], snap_zeros),
-        ]
-        .map(|(scale, polynomial, extremes)| {
-            let values = extremes.iter().chain(&[0.0, 1.0]).map(|&u| evaluate(polynomial, u) * scale);
-            // A value that is no number must not vanish in a minimum.
-            if values.clone().any(f64::is_nan) {
-                return (f64::NAN, f64::NAN);
-            }
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
-        })
-    }
-}
-
-/// Least and greatest Bernstein coefficient bᵢ = Σₖ C(i, k)/C(n, k)·cₖ of a polynomial of degree n on \[0, 1\].
-fn hull(polynomial: &[f64], scale: f64) -> (f64, f64) {
-    let degree = polynomial.len() - 1;
-    let coefficient = |i: usize| {
-        let (mut sum, mut ratio) = (polynomial[0], 1.0);
-        for (k, c) in polynomial.iter().enumerate().take(i + 1).skip(1) {
-            ratio *= (i + 1 - k) as f64 / (degree + 1 - k) as f64;
-            sum += ratio * c;
+        let zeros = (order + 1..5)
+            .rev()
+            .fold(Vec::new(), |turning_points, k| zeros_between(&self.derivative(k).0, &turning_points));
+        let (polynomial, scale) = self.derivative(order);
+        let values = zeros.iter().chain(&[0.0, 1.0]).map(|&u| evaluate(&polynomial, u) * scale);
+        // A value that is no number must not vanish in a minimum.
+        if values.clone().any(f64::is_nan) {
+            return (f64::NAN, f64::NAN);
         }
-        sum * scale
-    };
-    (0..=degree).map(coefficient).fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), b| (lo.min(b), hi.max(b)))
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
+    }
+
+    /// Bounds of the derivative of an order from 0 to 3 on \[0, h\] that cost little: the least and greatest of its Bernstein
+    /// coefficients, between which a polynomial stays. NaN where one of them is.
+    pub(crate) fn hull(&self, order: usize) -> (f64, f64) {
+        const CHOOSE: [[f64; 6]; 6] = [
+            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+            [1.0, 2.0, 1.0, 0.0, 0.0, 0.0],
+            [1.0, 3.0, 3.0, 1.0, 0.0, 0.0],
+            [1.0, 4.0, 6.0, 4.0, 1.0, 0.0],
+            [1.0, 5.0, 10.0, 10.0, 5.0, 1.0],
+        ];
+        let degree = 5 - order;
+        let mut coefficients = self.coefficients;
+        for _ in 0..order {
+            for k in 0..5 {
+                coefficients[k] = coefficients[k + 1] * (k + 1) as f64;
+            }
+        }
+        let (mut least, mut greatest, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        for (i, row) in CHOOSE.iter().enumerate().take(degree + 1) {
+            let value: f64 = (0..=i).map(|j| coefficients[j] * row[j] / CHOOSE[degree][j]).sum();
+            (least, greatest, sum) = (least.min(value), greatest.max(value), sum + value);
+        }
+        let scale = self.h.recip().powi(order as i32);
+        if sum.is_nan() { (f64::NAN, f64::NAN) } else { (least * scale, greatest * scale) }
+    }
 }
 
 fn evaluate(polynomial: &[f64], u: f64) -> f64 {
@@ -180,12 +175,14 @@ mod tests {
                 [number(0), number(1), 5.0 * number(2)],
                 [number(0) + 0.3 * h * number(3), number(4), 5.0 * number(5)],
             );
-            let ranges = quintic.ranges();
             const POINTS: usize = 4000;
-            for (k, (least, greatest)) in ranges.into_iter().enumerate() {
+            for k in 0..4 {
+                let (least, greatest) = quintic.range(k);
+                let hull = quintic.hull(k);
                 let values = (0..=POINTS).map(|i| quintic.at(h * i as f64 / POINTS as f64)[k]);
                 let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(v), u.max(v)));
                 let size = hi.abs().max(lo.abs());
+                assert!(hull.0 <= least + 1e-12 * size && hull.1 >= greatest - 1e-12 * size, "{seed} {k} {hull:?}");
                 // A parabola's peak between grid points is missed by at most f″·(1/2N)²/2 ≤ 40·size/N² here.
                 let slack = 1e-12 * size + 40.0 * (hi - lo + size) / (POINTS * POINTS) as f64;
                 assert!(least <= lo + 1e-12 * size && greatest >= hi - 1e-12 * size, "{seed} {k}");

@@ -2,11 +2,11 @@
 
 use nalgebra::DVector;
 
-use crate::audit::against;
+use crate::audit::{Audit, against};
 use crate::error::{ManipulatorError, Result};
+use crate::options::TimingOptions;
 use crate::robot::Robot;
 use crate::sampling::Sampling;
-use crate::timing::TimingOptions;
 use crate::trajectory::{JointPoint, JointTrajectory};
 
 /// The least duration of the quintic q = D(10τ³ − 15τ⁴ + 6τ⁵), τ = t/T, whose peaks are 15/8·D/T, 10/√3·D/T² and 60·D/T³.
@@ -27,16 +27,42 @@ pub fn rest_to_rest(
     to: &DVector<f64>,
     options: &TimingOptions,
 ) -> Result<JointTrajectory> {
-    let limits = options.limits(robot)?;
+    let bounds = options.bounds(robot)?;
+    let limits = &bounds.limits;
     robot.check_within_limits("the start of the move", from)?;
     robot.check_within_limits("the end of the move", to)?;
     let distance = to - from;
-    let least = (0..from.len())
-        .map(|i| least_duration(distance[i].abs(), limits.velocity[i], limits.acceleration[i], limits.jerk[i]))
-        .fold(0.0, f64::max);
-    let sampling = Sampling { rate_hz: options.rate_hz, joint_names: robot.chain.joint_names() };
     // A part in ten thousand keeps rounding of the points below the limits.
-    let (steps, step_ns) = if least > 0.0 { sampling.steps(least * 1.0001)? } else { (0, 0) };
+    let mut least = 1.0001
+        * (0..from.len())
+            .map(|i| least_duration(distance[i].abs(), limits.velocity[i], limits.acceleration[i], limits.jerk[i]))
+            .fold(0.0, f64::max);
+    let sampling = Sampling { rate_hz: options.rate_hz, joint_names: robot.chain.joint_names() };
+    for _ in 0..ATTEMPTS {
+        let trajectory = straight(from, &distance, to, least, &sampling)?;
+        let found = against(&bounds, &trajectory);
+        if found.audit.limits_ok {
+            return Ok(trajectory);
+        }
+        if !(found.slowdown > 1.0 && found.slowdown.is_finite()) {
+            return Err(not_met(&found.audit));
+        }
+        least = trajectory.duration_s() * found.slowdown * 1.001;
+    }
+    Err(not_met(&against(&bounds, &straight(from, &distance, to, least, &sampling)?).audit))
+}
+
+/// Joint limits are met at once; torques and the tool's speed need a few more.
+const ATTEMPTS: usize = 12;
+
+fn straight(
+    from: &DVector<f64>,
+    distance: &DVector<f64>,
+    to: &DVector<f64>,
+    least: f64,
+    sampling: &Sampling<'_>,
+) -> Result<JointTrajectory> {
+    let (steps, step_ns) = if least > 0.0 { sampling.steps(least)? } else { (0, 0) };
     let duration = Sampling::time(steps, step_ns);
     let points = (0..=steps)
         .map(|k| {
@@ -47,7 +73,7 @@ pub fn rest_to_rest(
                 speed = 30.0 * tau * tau * (1.0 - tau) * (1.0 - tau) / duration;
                 acceleration = 60.0 * tau * (1.0 - tau) * (1.0 - 2.0 * tau) / (duration * duration);
             }
-            let position = if k == steps { to.clone() } else { from + &distance * way };
+            let position = if k == steps { to.clone() } else { from + distance * way };
             JointPoint {
                 time_s: Sampling::time(k, step_ns),
                 positions: position.iter().copied().collect(),
@@ -56,15 +82,16 @@ pub fn rest_to_rest(
             }
         })
         .collect();
-    let trajectory = JointTrajectory { joint_names: robot.chain.joint_names().to_vec(), points };
-    let found = against(&limits, &trajectory);
-    if found.limits_ok {
-        return Ok(trajectory);
-    }
-    Err(ManipulatorError::LimitsNotMet {
+    Ok(JointTrajectory { joint_names: sampling.joint_names.to_vec(), points })
+}
+
+/// Why a trajectory is withheld.
+pub(crate) fn not_met(found: &Audit) -> ManipulatorError {
+    ManipulatorError::LimitsNotMet {
         velocity: found.max_ratio.velocity,
         acceleration: found.max_ratio.acceleration,
         jerk: found.max_ratio.jerk,
+        torque: found.max_ratio.torque.unwrap_or(0.0),
         position_margin: found.position_margin,
-    })
+    }
 }

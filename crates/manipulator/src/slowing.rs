@@ -1,10 +1,11 @@
 //! A smooth stop on the planned path: the trajectory's own clock is slowed down until it stands.
 
-use crate::audit::{Audit, against_from};
+use crate::audit::against_from;
 use crate::error::{ManipulatorError, Result};
+use crate::options::TimingOptions;
 use crate::quintic::Quintic;
+use crate::rest_to_rest::not_met;
 use crate::robot::{Limits, Robot};
-use crate::timing::TimingOptions;
 use crate::trajectory::{JointPoint, JointTrajectory, whole_ns};
 
 /// Stops a running trajectory from its time `at_s` on, without leaving its path: what was checked of the path, collisions too, still
@@ -24,14 +25,14 @@ pub fn slow_to_stop(
     at_s: f64,
     options: &TimingOptions,
 ) -> Result<JointTrajectory> {
-    let limits = options.limits(robot)?;
+    let bounds = options.bounds(robot)?;
     check_running(robot, running, at_s)?;
     let from = running.state_at(at_s);
     let mut best = running.after(at_s);
-    let audit = |trajectory: &JointTrajectory| against_from(&limits, trajectory, Some(&from));
+    let audit = |trajectory: &JointTrajectory| against_from(&bounds, trajectory, Some(&from)).audit;
     let remainder = audit(&best);
     for margin in MARGINS {
-        let slowed = Slowing::new(running, &limits, 1.0 / options.rate_hz, margin).from(at_s, from.clone());
+        let slowed = Slowing::new(running, &bounds.limits, 1.0 / options.rate_hz, margin).from(at_s, from.clone());
         if slowed.duration_s() < best.duration_s() && audit(&slowed).limits_ok {
             best = slowed;
             break;
@@ -59,15 +60,6 @@ pub(crate) fn check_running(robot: &Robot, running: &JointTrajectory, at_s: f64)
     }
     let duration_s = running.duration_s();
     if (0.0..=duration_s).contains(&at_s) { Ok(()) } else { Err(ManipulatorError::NotRunning { at_s, duration_s }) }
-}
-
-pub(crate) fn not_met(found: &Audit) -> ManipulatorError {
-    ManipulatorError::LimitsNotMet {
-        velocity: found.max_ratio.velocity,
-        acceleration: found.max_ratio.acceleration,
-        jerk: found.max_ratio.jerk,
-        position_margin: found.position_margin,
-    }
 }
 
 /// The trajectory's time, and its derivatives by time.

@@ -21,6 +21,19 @@ impl SpeedProfile {
         Self { times, pieces, ends: [states[0][0], states[states.len() - 1][0]] }
     }
 
+    /// Through positions with given speeds at increasing times from 0, the acceleration constant between them.
+    pub(crate) fn of_constant_accelerations(times: Vec<f64>, positions: &[f64], speeds: &[f64]) -> Self {
+        let pieces = (0..times.len() - 1)
+            .map(|k| {
+                let h = times[k + 1] - times[k];
+                let acceleration = (speeds[k + 1] - speeds[k]) / h;
+                let state = |i: usize| [positions[i], speeds[i], acceleration];
+                Quintic::hermite(h, state(k), state(k + 1))
+            })
+            .collect();
+        Self { ends: [positions[0], positions[positions.len() - 1]], times, pieces }
+    }
+
     pub(crate) fn duration(&self) -> f64 {
         self.times[self.times.len() - 1]
     }

@@ -107,10 +107,10 @@ impl Interval<'_> {
             let (lower, upper) = (robot.limits.lower[joint], robot.limits.upper[joint]);
             let inside = |(least, greatest): (f64, f64)| least >= lower - 1e-9 && greatest <= upper + 1e-9;
             // The hull is quick and nearly always enough.
-            if inside(polynomial.hulls()[0]) {
+            if inside(polynomial.hull(0)) {
                 continue;
             }
-            let (least, greatest) = polynomial.ranges()[0];
+            let (least, greatest) = polynomial.range(0);
             if !inside((least, greatest)) {
                 return Err(ManipulatorError::JointLimit {
                     pose: self.pose(),
@@ -135,7 +135,7 @@ impl Interval<'_> {
             DVector::from_iterator(
                 polynomials.len(),
                 polynomials.iter().map(|polynomial| {
-                    let (least, most) = polynomial.hulls()[order];
+                    let (least, most) = polynomial.hull(order);
                     least.abs().max(most.abs())
                 }),
             )

@@ -2,8 +2,8 @@
 
 use manipulator::nalgebra::DVector;
 use manipulator::{
-    Audit, JointTrajectory, ManipulatorError, PathReport, Robot, TimedPath, audit, audit_from, connect, follow,
-    rest_to_rest, time_path,
+    Audit, JointTrajectory, ManipulatorError, PathReport, Robot, TimedPath, audit_under, connect, follow, rest_to_rest,
+    time_path,
 };
 use reorder::{Ordering, Topology, order_poses};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, SplineError, centripetal_knots};
@@ -119,7 +119,7 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
 
     let pose_times_s = times_by_input(&ordering, &distinct, &timed.knot_times_s, approach_s);
     let (pose_error_max_m, pose_error_max_rad) = accuracy(robot, config, poses, &trajectory, &pose_times_s)?;
-    let audit = passed_audit(robot, &trajectory, request.handover.as_ref())?;
+    let audit = passed_audit(robot, config, &trajectory, request.handover.as_ref())?;
     Ok(Plan {
         ordering,
         spline,
@@ -243,11 +243,14 @@ fn times_by_input(ordering: &Ordering, distinct: &[usize], knot_times_s: &[f64],
 }
 
 /// The last gate before a robot.
-fn passed_audit(robot: &Robot, trajectory: &JointTrajectory, handover: Option<&Handover>) -> Result<Audit, Refusal> {
-    let audit = match handover {
-        Some(handover) => audit_from(robot, trajectory, &handover.state()),
-        None => audit(robot, trajectory),
-    };
+fn passed_audit(
+    robot: &Robot,
+    config: &Config,
+    trajectory: &JointTrajectory,
+    handover: Option<&Handover>,
+) -> Result<Audit, Refusal> {
+    let from = handover.map(Handover::state);
+    let audit = audit_under(robot, trajectory, config.timing.audit_rules(), from.as_ref());
     if audit.limits_ok { Ok(audit) } else { Err(Refusal::Limits(Box::new(audit))) }
 }
 

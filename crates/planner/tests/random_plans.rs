@@ -158,12 +158,14 @@ fn doubt_about(robot: &Robot, set: &PoseSet, refusal: &Refusal) -> Option<String
                     _ => None,
                 })
         }
-        ManipulatorError::Unreachable { pose, .. } | ManipulatorError::Jump { pose, .. } => {
-            stopped(*pose, &|end| match end {
+        ManipulatorError::Unreachable(_)
+        | ManipulatorError::UnreachableBetween { .. }
+        | ManipulatorError::Jump { .. } => source.pose().is_some_and(|pose| {
+            stopped(pose, &|end| match end {
                 End::Lost(s) | End::Singular(s, _) => Some(*s),
                 _ => None,
             })
-        }
+        }),
         _ => false,
     };
     (!holds).then(|| format!("attempts ended otherwise: {:?}", &ends[..ends.len().min(6)]))

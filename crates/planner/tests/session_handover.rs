@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use planner::manipulator::Robot;
-use planner::manipulator::{TimingOptions, audit_from};
 use planner::manipulator::nalgebra::DVector;
+use planner::manipulator::{TimingOptions, audit_from};
 use planner::se3_geom::xyzw_from_rotation;
 use planner::{Config, Input, Job, Motion, OnRefusal, Outcome, Output, RawPose, Refusal, Session};
 
