@@ -206,7 +206,7 @@ fn refusals_name_the_input() {
     }
 
     let one = said(&Config::default(), &Request { poses: vec![recording.poses[0]], ..base.clone() });
-    assert!(one.is_bad_input() && one.to_string().contains("1 points"), "{one}");
+    assert!(one.is_bad_input() && one.to_string().contains("1 point"), "{one}");
 
     // A pose two metres away, at the end of the order so that the order stays plausible up to there.
     let mut far = base.clone();

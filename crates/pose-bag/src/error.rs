@@ -23,6 +23,12 @@ pub enum BagError {
         /// The file.
         file: String,
     },
+    /// A table without rows.
+    #[error("{file} holds no rows")]
+    NoRows {
+        /// File name.
+        file: String,
+    },
     /// There is no pose in the file.
     #[error("{file} holds no poses")]
     Empty {

@@ -74,7 +74,7 @@ impl Table {
         })?;
         match columns {
             Some(columns) if !rows.is_empty() => Ok(Self { file: file.into(), columns, text: all, rows }),
-            _ => Err(BagError::Empty { file: file.into() }),
+            _ => Err(BagError::NoRows { file: file.into() }),
         }
     }
 
@@ -101,6 +101,12 @@ impl Table {
     /// Never: a table without rows is refused.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
+    }
+
+    /// The text of a row, counted from 0, as it stands in the file.
+    pub fn row_text(&self, row: usize) -> &str {
+        let start = if row == 0 { 0 } else { self.rows[row - 1].end };
+        self.text[start..self.rows[row].end].trim_end()
     }
 
     /// Line of the file, from 1, on which each row stands.

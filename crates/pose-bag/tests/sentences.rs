@@ -46,8 +46,8 @@ fn csv() {
     let folder = Folder::new();
     let rows = |rows: &str| format!("{HEADER}0,0,0,0,0,0,1\n\n{rows}\n");
     let cases = [
-        (String::new(), "poses.csv holds no poses"),
-        (HEADER.into(), "poses.csv holds no poses"),
+        (String::new(), "poses.csv holds no rows"),
+        (HEADER.into(), "poses.csv holds no rows"),
         (rows("0,0,0,0,0,0,0"), "poses.csv, line 4: the quaternion is zero, so there is no orientation"),
         (rows("0,0,0,0,0,0,2"), "poses.csv, line 4: the quaternion has norm 2.000000 instead of 1"),
         (rows("0,NaN,0,0,0,0,1"), "poses.csv, line 4: y is not finite: NaN"),
@@ -75,7 +75,7 @@ fn csv() {
     let missing = folder.sentence(read_table(folder.path("none.csv")));
     assert_eq!(missing, "none.csv: No such file or directory (os error 2)");
     let standard_input = Table::from_reader("x\n".as_bytes(), "standard input").unwrap_err().to_string();
-    assert_eq!(standard_input, "standard input holds no poses");
+    assert_eq!(standard_input, "standard input holds no rows");
 }
 
 #[test]

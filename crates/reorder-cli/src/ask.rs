@@ -48,6 +48,10 @@ impl Ask<'_> {
         points: &[M::Point],
         read: fn(&[f64]) -> Result<M::Point, String>,
     ) -> Answer {
+        if matches!(self.weight, Weight::MetresPerRadian(_)) {
+            return Err("--metres-per-radian weighs rotations against translations, and these points do not have both"
+                .to_owned());
+        }
         self.answer(metric, points, read, |options| order(metric, points, options))
     }
 

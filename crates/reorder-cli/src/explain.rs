@@ -14,23 +14,28 @@ pub(crate) fn explain(ordering: &Ordering, edges: &[EdgeFigures]) -> String {
     };
     let shape = match ordering.parts.len() {
         0 => curve(ordering.topology).to_owned(),
-        parts => format!("{parts} curves, {} of them on none", ordering.outliers.len()),
+        parts if ordering.outliers.is_empty() => counted(parts, "curve"),
+        parts => format!("{}, {} on none", counted(parts, "curve"), counted(ordering.outliers.len(), "point")),
     };
     let verdict = match ordering.verdict {
         Verdict::Certified => "certified: the hypotheses of a reconstruction theorem hold with margin",
         Verdict::Plausible => "plausible: every test agrees, nothing is proven",
         Verdict::Ambiguous => "ambiguous: something speaks against this order",
     };
-    let mut lines = vec![format!("{} points on {shape}", ordering.n), format!("verdict     {verdict}")];
+    let mut lines = vec![format!("{} on {shape}", counted(ordering.n, "point")), format!("verdict     {verdict}")];
     for (rows, part) in ordering.components.iter().zip(&ordering.parts) {
-        let (n, first) = (rows.len(), rows[0]);
+        let (n, first) = (counted(rows.len(), "point"), rows[0]);
         let verdict = format!("{:?}", part.verdict).to_lowercase();
-        lines.push(format!("curve       {n} points from point {first} on: {}, {verdict}", curve(part.topology)));
+        lines.push(format!("curve       {n} from point {first} on: {}, {verdict}", curve(part.topology)));
     }
     if !ordering.outliers.is_empty() {
         let rows: Vec<String> = ordering.outliers.iter().take(SHOWN).map(usize::to_string).collect();
         let more = if ordering.outliers.len() > SHOWN { ", …" } else { "" };
-        lines.push(format!("apart       {} points on no curve: {}{more}", ordering.outliers.len(), rows.join(", ")));
+        lines.push(format!(
+            "apart       {} on no curve: {}{more}",
+            counted(ordering.outliers.len(), "point"),
+            rows.join(", ")
+        ));
     }
     lines.push(match (ordering.method, &ordering.repaired) {
         (_, Some(repaired)) => format!(
@@ -44,28 +49,35 @@ pub(crate) fn explain(ordering: &Ordering, edges: &[EdgeFigures]) -> String {
         (Method::Mst | Method::Repaired, _) => "method      minimum spanning tree".to_owned(),
     });
     if let Some(length) = ordering.metres_per_radian {
-        let kept = if ordering.weight_stable == Some(true) { "the same" } else { "another" };
-        lines.push(format!(
-            "weight      one radian counts as {length:.4} m; with half or twice of it the order is {kept}"
-        ));
+        let kept = match ordering.weight_stable {
+            Some(true) => "with half or twice of it the order is the same",
+            Some(false) => "with half or twice of it the order is another",
+            None => "others were not tried",
+        };
+        lines.push(format!("weight      one radian counts as {} m; {kept}", figure(length)));
     }
     let certificate = &ordering.certificate;
-    lines.push(format!("gaps        {:.6} at most", certificate.max_gap));
+    lines.push(format!("gaps        {} at most", figure(certificate.max_gap)));
     if let Some((reach, epsilon)) = certificate.reach.zip(certificate.epsilon) {
         lines.push(format!(
-            "reach       {reach:.6} estimated; epsilon = gap/(2 reach) = {epsilon:.3}, theorems ask for < 1"
+            "reach       {} estimated; epsilon = gap/(2 reach) = {epsilon:.3}, theorems ask for < 1",
+            figure(reach)
         ));
     }
     let mut worst: Vec<&EdgeFigures> = edges.iter().filter(|edge| edge.epsilon > 0.0).collect();
     worst.sort_by(|a, b| b.epsilon.total_cmp(&a.epsilon));
     for EdgeFigures { at: [a, b], gap, epsilon, .. } in worst.into_iter().take(WORST) {
-        lines.push(format!("edge        points {a} and {b}: gap {gap:.6}, epsilon {epsilon:.3}"));
+        lines.push(format!("edge        points {a} and {b}: gap {}, epsilon {epsilon:.3}", figure(*gap)));
     }
     if let Some((radius, margin)) = certificate.injectivity_radius.zip(certificate.margin) {
-        lines.push(format!("geodesics   unique within {radius:.6}: {margin:.6} more than the longest gap"));
+        lines.push(format!(
+            "geodesics   unique within {}: {} more than the longest gap",
+            figure(radius),
+            figure(margin)
+        ));
     }
     if !ordering.duplicates.is_empty() {
-        lines.push(format!("equal       {} groups of equal points", ordering.duplicates.len()));
+        lines.push(format!("equal       {} of equal points", counted(ordering.duplicates.len(), "group")));
     }
     for doubt in ordering.doubts.iter().take(SHOWN) {
         lines.push(format!("doubt       points {} and {}: {}", doubt.at[0], doubt.at[1], doubt.why));
@@ -74,4 +86,14 @@ pub(crate) fn explain(ordering: &Ordering, edges: &[EdgeFigures]) -> String {
         lines.push(format!("            and {} more", ordering.doubts.len() - SHOWN));
     }
     lines.join("\n") + "\n"
+}
+
+/// Six decimals, or an exponent where they would be all zeros or none would matter.
+fn figure(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e6).contains(&value.abs()) { format!("{value:.6}") } else { format!("{value:.6e}") }
+}
+
+/// "1 point", "2 points".
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use tracing::debug_span;
 
 use crate::ask::Ask;
-use crate::explain::explain;
+use crate::explain::{counted, explain};
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress::with_progress;
@@ -135,15 +135,13 @@ struct WithEdges<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (rows, mut ordering, edges) = with_progress(|| {
+    let (rows, ordering, edges) = with_progress(|| {
         let rows = debug_span!("reading").in_scope(|| arguments.source.rows(arguments.manifold))?;
         let (ordering, edges) = ask(arguments)
             .order(&rows)
-            .map_err(|why| Failure::BadInput(format!("{}: {why}", arguments.source.input.display())))?;
+            .map_err(|why| Failure::BadInput(format!("{}: {why}", arguments.source.name())))?;
         Ok((rows, ordering, edges))
     })?;
-    // Without rotations and translations to weigh against each other, there is no weight that the order could hang on.
-    ordering.weight_stable.get_or_insert(true);
     if arguments.explain {
         return print(&explain(&ordering, &edges));
     }
@@ -151,9 +149,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         // The other formats have no place for it, and an order that is in doubt must not pass for a sure one.
         let first = ordering.doubts.first().map_or("", |doubt| &doubt.why);
         eprintln!(
-            "reorder: warning: {}: the order is ambiguous ({} doubts): {first}",
-            arguments.source.input.display(),
-            ordering.doubts.len()
+            "reorder: warning: {}: the order is ambiguous ({}): {first}",
+            arguments.source.name(),
+            counted(ordering.doubts.len(), "doubt")
         );
     }
     print(&match arguments.format {
@@ -194,7 +192,15 @@ fn ask(arguments: &Arguments) -> Ask<'_> {
     Ask { options, weight: arguments.metres_per_radian, from: arguments.start_at.as_deref(), with_edges }
 }
 
+/// A table's rows whole, with the columns that no point was made of.
 fn csv(rows: &Rows, order: &[usize]) -> String {
+    if let Some(table) = &rows.table {
+        let lines = order.iter().map(|&row| table.row_text(row));
+        return std::iter::once(table.columns().join(",").as_str())
+            .chain(lines)
+            .map(|line| format!("{line}\n"))
+            .collect();
+    }
     let mut text = rows.columns.join(",") + "\n";
     for &i in order {
         let fields: Vec<String> = rows.values[i].iter().map(f64::to_string).collect();

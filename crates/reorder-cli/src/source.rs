@@ -62,6 +62,8 @@ pub(crate) struct Rows {
     pub(crate) points: Points,
     pub(crate) columns: Vec<String>,
     pub(crate) values: Vec<Vec<f64>>,
+    /// What they were read from, where that is a table.
+    pub(crate) table: Option<Table>,
 }
 
 impl Source {
@@ -70,11 +72,16 @@ impl Source {
         self.input == Path::new("-") || self.input.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
     }
 
+    /// What the input is called in sentences.
+    pub(crate) fn name(&self) -> String {
+        if self.input == Path::new("-") { "standard input".to_owned() } else { self.input.display().to_string() }
+    }
+
     /// The points of a manifold; where none is named, of the richest one that the columns allow.
     pub(crate) fn rows(&self, manifold: Option<Manifold>) -> Result<Rows, Failure> {
         if self.is_table() {
             let table = read_table(&self.input).map_err(Failure::bad_input)?;
-            return rows_of_table(&table, manifold);
+            return Ok(Rows { table: Some(table.clone()), ..rows_of_table(&table, manifold)? });
         }
         let poses = self.poses()?.poses;
         let values: Vec<Vec<f64>> = poses
@@ -97,6 +104,7 @@ impl Source {
             points,
             columns: POSE_COLUMNS[chosen.clone()].iter().map(|&column| column.to_owned()).collect(),
             values: values.into_iter().map(|row| row[chosen.clone()].to_vec()).collect(),
+            table: None,
         })
     }
 
@@ -154,7 +162,7 @@ fn rows_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Rows, Fail
         })?),
         Manifold::Sim2 => Points::Similarities(checked(table, &values, similarity)?),
     };
-    Ok(Rows { points, columns: columns.into_iter().map(str::to_owned).collect(), values })
+    Ok(Rows { points, columns: columns.into_iter().map(str::to_owned).collect(), values, table: None })
 }
 
 fn flat<const N: usize>(values: &[Vec<f64>]) -> Vec<SVector<f64, N>> {

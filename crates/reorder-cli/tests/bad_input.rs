@@ -30,13 +30,17 @@ fn bad_input_exits_with_2_and_names_file_and_line() {
         ),
         ("word.csv", format!("{pose}a,0,0,0,0,0,1\n"), "word.csv, line 4: x is not a number: \"a\""),
         ("short.csv", format!("{pose}0,0\n"), "short.csv, line 4: 2 fields instead of 7"),
-        ("empty.csv", String::new(), "empty.csv holds no poses"),
+        ("empty.csv", String::new(), "empty.csv holds no rows"),
         (
             "one.csv",
             "x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,1\n".into(),
-            "one.csv: there are 1 points to order, but at least 2 are needed",
+            "one.csv: there is 1 point to order, but at least 2 are needed",
         ),
-        ("equal.csv", "x,y\n1,2\n1,2\n1,2\n".into(), "equal.csv: all 3 points are equal, so there is nothing to order"),
+        (
+            "equal.csv",
+            "x,y\n1,2\n1,2\n1,2\n".into(),
+            "equal.csv: all 3 points are equal up to rounding, so there is nothing to order",
+        ),
         ("columns.csv", "a,b\n1,2\n".into(), COLUMNS),
         ("far.csv", "lat,lon\n0,0\n91,0\n".into(), "far.csv, line 3: lat is beyond 90 degrees: 91"),
         ("flat.csv", "x,y,theta,scale\n0,0,1,1\n1,0,2,0\n".into(), "flat.csv, line 3: scale is not positive: 0"),
@@ -150,9 +154,9 @@ fn every_manifold_answers_for_none_one_two_and_equal_points() {
     let folder = tempfile::tempdir().unwrap();
     for space in &SPACES {
         let [a, b, c] = space.rows;
-        space.refuses(&folder, space.columns, &[], "in.csv holds no poses");
-        space.refuses(&folder, space.columns, &[a], "in.csv: there are 1 points to order, but at least 2 are needed");
-        let equal = "in.csv: all 3 points are equal, so there is nothing to order";
+        space.refuses(&folder, space.columns, &[], "in.csv holds no rows");
+        space.refuses(&folder, space.columns, &[a], "in.csv: there is 1 point to order, but at least 2 are needed");
+        let equal = "in.csv: all 3 points are equal up to rounding, so there is nothing to order";
         space.refuses(&folder, space.columns, &[c, c, c], equal);
         for rows in [[a, b], [c, a]] {
             assert_eq!(out(&space.order(&folder, space.columns, &rows)), "0\n1\n", "{}", space.name);

@@ -148,7 +148,7 @@ fn order_explains_itself_and_takes_a_weight() {
     assert_eq!(refused.status.code(), Some(2));
     let (code, said) = refusal(&["order", &bag, "--metres-per-radian=-1"]);
     assert!(
-        code == 2 && said.ends_with("metres_per_radian is -1, but it and its square must be positive finite numbers"),
+        code == 2 && said.ends_with("metres_per_radian is -1, but it, its half, its double and their squares must be positive finite numbers"),
         "{said}"
     );
 }
@@ -233,4 +233,23 @@ fn order_starts_near_a_pose_and_prints_its_edges() {
 fn order_says_nothing_on_standard_error_when_nobody_watches() {
     let output = reorder(&["order", &format!("{BAGS}/lasa_sine")]);
     assert!(output.status.success() && output.stderr.is_empty());
+}
+
+#[test]
+fn order_writes_the_rows_of_a_table_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(&folder, "rows.csv", "t,x,y,quality\n0.10,2,0,good\n0.2,0,0,\"poor\"\n0.3,1.0,0,\n");
+    let csv = out(&reorder(&["order", &path, "--manifold", "r2", "--format", "csv", "--start", "1"]));
+    assert_eq!(csv, "t,x,y,quality\n0.2,0,0,\"poor\"\n0.3,1.0,0,\n0.10,2,0,good\n");
+}
+
+#[test]
+fn a_weight_for_points_that_have_none_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(&folder, "plane.csv", "x,y\n0,0\n1,0\n2,0\n");
+    let (code, said) = refusal(&["order", &path, "--metres-per-radian", "0.3"]);
+    let sentence = "--metres-per-radian weighs rotations against translations, and these points do not have both";
+    assert!(code == 2 && said.ends_with(sentence), "{said}");
+    let found: serde_json::Value = serde_json::from_str(&out(&reorder(&["order", &path]))).unwrap();
+    assert!(found["weight_stable"].is_null(), "a weight that does not exist was never tried");
 }

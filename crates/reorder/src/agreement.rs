@@ -106,6 +106,10 @@ pub(crate) fn examine_sequence<M: Manifold>(
             go_on = more;
         }
     }
+    if problem.was_cut_short() {
+        let why = "a search ended at its limit of moves before no move made the order shorter".to_owned();
+        doubts.push(Doubt { at: [found.rows[0], found.rows[found.rows.len() - 1]], why });
+    }
     Agreement { weight_stable, doubts }
 }
 

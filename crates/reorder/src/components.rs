@@ -5,7 +5,7 @@ use petgraph::unionfind::UnionFind;
 use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
 
-use crate::duplicates::ROUNDING_SHARE;
+use crate::duplicates::{Distinct, merge};
 use crate::error::{OrderError, check_points};
 use crate::order::order;
 use crate::ordering::{ComponentsChoice, Options, Ordering};
@@ -106,9 +106,8 @@ impl Piece {
     /// How many of the edges stand before the first jump. Edges between equal points are none.
     fn jump(&self) -> Option<usize> {
         let edges = &self.edges;
-        let rounding = ROUNDING_SHARE * edges.first()?.0;
         let most = self.nodes.len() / POINTS_PER_PIECE;
-        let jumps = |k: &usize| edges[*k].0 > rounding && edges[k - 1].0 >= APART * edges[*k].0;
+        let jumps = |k: &usize| edges[*k].0 > 0.0 && edges[k - 1].0 >= APART * edges[*k].0;
         (1..edges.len()).take(most).find(jumps)
     }
 
@@ -160,7 +159,8 @@ pub fn order_components<M: Manifold>(
     options: &Options,
 ) -> Result<Components, OrderError> {
     check_points(manifold, points)?;
-    components_by(points, &minimum_spanning_tree(manifold, points)?, options.start, |own, start| {
+    let distinct = merge(manifold, points, minimum_spanning_tree(manifold, points)?);
+    components_by(points, &distinct, options.start, |own, start| {
         order(manifold, own, &Options { start, components: ComponentsChoice::One, ..*options })
     })
 }
@@ -168,25 +168,21 @@ pub fn order_components<M: Manifold>(
 /// Each curve as `order_one` orders its points.
 pub(crate) fn components_by<P: Clone>(
     points: &[P],
-    tree: &Tree,
+    distinct: &Distinct,
     start: Option<usize>,
     order_one: impl Fn(&[P], Option<usize>) -> Result<Ordering, OrderError>,
 ) -> Result<Components, OrderError> {
     if let Some(start) = start.filter(|&start| start >= points.len()) {
         return Err(OrderError::StartOutOfRange { start, count: points.len() });
     }
-    let Split { curves, outliers, separation } = split(tree);
+    let Split { curves, outliers, separation } = split(&distinct.tree).with_equal_points(&distinct.groups);
     let mut found = Components { curves: Vec::new(), outliers, separation };
     for rows in curves {
         let own: Vec<P> = rows.iter().map(|&row| points[row].clone()).collect();
         match order_one(&own, start.and_then(|start| rows.binary_search(&start).ok())) {
             Ok(ordering) => found.curves.push(Component { rows, ordering }),
-            // One point that came several times, beside curves.
-            Err(OrderError::AllEqual { .. } | OrderError::TooFewDistinct { .. }) if rows.len() < points.len() => {
-                found.outliers.extend(rows);
-            }
             Err(OrderError::StartNotAnEnd { start, ends }) => {
-                return Err(OrderError::StartNotAnEnd { start: rows[start], ends: ends.map(|k| rows[k]) });
+                return Err(OrderError::start_not_an_end(rows[start], ends.map(|k| rows[k])));
             }
             Err(error) => return Err(error),
         }

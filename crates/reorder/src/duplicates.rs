@@ -1,60 +1,98 @@
 //! Equal points merged, with every input row kept.
 
 use petgraph::graph::NodeIndex;
-use petgraph::unionfind::UnionFind;
 use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
 
+use crate::equality::Equality;
+use crate::ordering::Doubt;
 use crate::spanning_tree::Tree;
 
-/// Two points nearer than this share of the longest tree edge are one point. Distances come from differences of coordinates
-/// that are rounded to ε/2 each, and go through a square root or an arcsine: a few ε of the data's extent is what equal points
-/// can differ by, and the longest tree edge is never more than that extent.
-pub(crate) const ROUNDING_SHARE: f64 = 4.0 * f64::EPSILON;
+/// With so few distinct points left, what was merged may be the whole curve.
+const FEW: usize = 10;
 
 /// Distinct points: `groups[k]` are the rows of node k of `tree`, ascending, and `groups[k][0]` stands for them.
 pub(crate) struct Distinct {
     pub(crate) groups: Vec<Vec<usize>>,
     group_of_row: Vec<usize>,
     pub(crate) tree: Tree,
+    /// What speaks against taking the rows of a group for one point.
+    pub(crate) doubt: Option<Doubt>,
 }
 
-/// Contracts the edges of rounding length. What is left is the minimum spanning tree of the distinct points.
+/// Contracts the edges between points that are equal up to rounding. What is left is the minimum spanning tree of the distinct points.
+///
+/// Rounding does not add up: every point of a group is within rounding of one of them, and a row of points each within rounding of
+/// the next falls into several groups, which is a doubt.
 pub(crate) fn merge<M: Manifold>(manifold: &M, points: &[M::Point], tree: Tree) -> Distinct {
-    let longest = tree.edge_weights().copied().fold(0.0, f64::max);
-    let is_rounding = |length: f64| length <= ROUNDING_SHARE * longest;
-    if !tree.edge_weights().any(|length| is_rounding(*length)) {
+    let mut equality = Equality::new(manifold);
+    let mut are_one = |a: usize, b: usize| {
+        manifold.distance(&points[a], &points[b]) == 0.0 || equality.is_rounding(&points[a], &points[b])
+    };
+    let is_rounding: Vec<bool> =
+        tree.edge_references().map(|e| are_one(e.source().index(), e.target().index())).collect();
+    if !is_rounding.contains(&true) {
         let rows = 0..points.len();
-        return Distinct { groups: rows.clone().map(|row| vec![row]).collect(), group_of_row: rows.collect(), tree };
-    }
-    let mut merged = UnionFind::<usize>::new(points.len());
-    for edge in tree.edge_references().filter(|e| is_rounding(*e.weight())) {
-        merged.union(edge.source().index(), edge.target().index());
+        let groups = rows.clone().map(|row| vec![row]).collect();
+        return Distinct { groups, group_of_row: rows.collect(), tree, doubt: None };
     }
 
-    let mut group_of_root = vec![usize::MAX; points.len()];
+    let mut chained = None;
+    // The row that a group is spread around.
+    let mut centre_of = vec![usize::MAX; points.len()];
+    for first in 0..points.len() {
+        if centre_of[first] != usize::MAX {
+            continue;
+        }
+        centre_of[first] = first;
+        let mut reached = vec![first];
+        while let Some(row) = reached.pop() {
+            for edge in tree.edges(NodeIndex::new(row)).filter(|edge| is_rounding[edge.id().index()]) {
+                let other = edge.target().index();
+                if centre_of[other] != usize::MAX {
+                    continue;
+                }
+                let joins = are_one(centre_of[row], other);
+                centre_of[other] = if joins { centre_of[row] } else { other };
+                if !joins {
+                    chained = chained.or(Some([row, other]));
+                }
+                reached.push(other);
+            }
+        }
+    }
+
+    let mut group_of_centre = vec![usize::MAX; points.len()];
     let mut group_of_row = Vec::with_capacity(points.len());
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for row in 0..points.len() {
-        let root = merged.find_mut(row);
-        if group_of_root[root] == usize::MAX {
-            group_of_root[root] = groups.len();
+    for (row, &centre) in centre_of.iter().enumerate() {
+        if group_of_centre[centre] == usize::MAX {
+            group_of_centre[centre] = groups.len();
             groups.push(Vec::new());
         }
-        groups[group_of_root[root]].push(row);
-        group_of_row.push(group_of_root[root]);
+        groups[group_of_centre[centre]].push(row);
+        group_of_row.push(group_of_centre[centre]);
     }
 
     let mut contracted = Tree::with_capacity(groups.len(), groups.len().saturating_sub(1));
     for group in &groups {
         contracted.add_node(group[0]);
     }
-    for edge in tree.edge_references().filter(|e| !is_rounding(*e.weight())) {
+    for edge in tree.edge_references() {
         let [a, b] = [edge.source(), edge.target()].map(|v| group_of_row[v.index()]);
-        let length = manifold.distance(&points[groups[a][0]], &points[groups[b][0]]);
-        contracted.add_edge(NodeIndex::new(a), NodeIndex::new(b), length);
+        if a != b {
+            let length = manifold.distance(&points[groups[a][0]], &points[groups[b][0]]);
+            contracted.add_edge(NodeIndex::new(a), NodeIndex::new(b), length);
+        }
     }
-    Distinct { groups, group_of_row, tree: contracted }
+    let few = if groups.len() < FEW { groups.as_slice() } else { &[] };
+    let inexact = few.iter().flat_map(|group| group[1..].iter().map(|&row| [group[0], row]));
+    let inexact = inexact.into_iter().find(|&[a, b]| !equality.is_exact(&points[a], &points[b]));
+    let doubt = chained.or(inexact).map(|at| Doubt {
+        at,
+        why: "these two differ by no more than rounding, and what order such points have is not told".to_owned(),
+    });
+    Distinct { groups, group_of_row, tree: contracted, doubt }
 }
 
 impl Distinct {

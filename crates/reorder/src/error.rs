@@ -8,7 +8,7 @@ use se3_geom::{LogError, Manifold};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OrderError {
     /// Fewer points than a curve of the wanted topology has.
-    #[error("there are {count} points to order, but at least {needed} are needed")]
+    #[error("{} to order, but at least {needed} are needed", there_are(*count))]
     TooFewPoints {
         /// How many were given.
         count: usize,
@@ -26,7 +26,7 @@ pub enum OrderError {
         needed: usize,
     },
     /// All points are the same one.
-    #[error("all {count} points are equal, so there is nothing to order")]
+    #[error("all {count} points are equal up to rounding, so there is nothing to order")]
     AllEqual {
         /// How many were given.
         count: usize,
@@ -49,8 +49,14 @@ pub enum OrderError {
         /// Input rows of the points.
         at: [usize; 2],
     },
+    /// Two different points whose distance is lost: coordinates below 1e-138 have no squares.
+    #[error("the distance between points {} and {} underflows: choose a smaller unit of length", at[0], at[1])]
+    DistanceUnderflow {
+        /// Input rows of the points.
+        at: [usize; 2],
+    },
     /// The wanted start is no input row.
-    #[error("the start {start} is out of range: there are {count} points, counted from 0")]
+    #[error("the start {start} is out of range: {}, counted from 0", there_are(*count))]
     StartOutOfRange {
         /// The wanted start.
         start: usize,
@@ -71,21 +77,53 @@ pub enum OrderError {
         /// The wanted start.
         start: usize,
     },
+    /// More points than noise can be taken from in bearable time.
+    #[error("{count} points are too many to denoise, which takes time with their square: {most} at most")]
+    TooManyToDenoise {
+        /// How many were given.
+        count: usize,
+        /// [`MOST_DENOISED`](crate::MOST_DENOISED).
+        most: usize,
+    },
     /// CRUST is asked for where there is no plane.
     #[error("CRUST orders points of the plane only")]
     NotPlanar,
     /// CRUST cannot triangulate these points.
-    #[error("CRUST cannot triangulate the points: {reason}")]
+    #[error("CRUST cannot triangulate the points: a coordinate is {}", of_triangulation(reason))]
     NoTriangulation {
         /// What is wrong with a coordinate.
         reason: spade::InsertionError,
     },
     /// The length scale of SE(3) is no length.
-    #[error("metres_per_radian is {value}, but it and its square must be positive finite numbers")]
+    #[error("metres_per_radian is {}, but it, its half, its double and their squares must be positive finite numbers", number(*value))]
     InvalidLengthScale {
         /// What was given.
         value: f64,
     },
+}
+
+impl OrderError {
+    /// The smaller row comes first.
+    pub(crate) fn start_not_an_end(start: usize, ends: [usize; 2]) -> Self {
+        Self::StartNotAnEnd { start, ends: [ends[0].min(ends[1]), ends[0].max(ends[1])] }
+    }
+}
+
+/// With an exponent where it would be mostly zeros.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e6).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
+fn there_are(count: usize) -> String {
+    if count == 1 { "there is 1 point".to_owned() } else { format!("there are {count} points") }
+}
+
+fn of_triangulation(reason: &spade::InsertionError) -> &'static str {
+    match reason {
+        spade::InsertionError::TooSmall => "nearer to 0 than 1e-43, and not 0",
+        spade::InsertionError::TooLarge => "beyond 1e60",
+        spade::InsertionError::NAN => "not a number",
+    }
 }
 
 /// Refuses the first point that is none, before anything is measured.

@@ -18,9 +18,9 @@ pub(crate) fn order_apart<M: Manifold>(
     points: &[M::Point],
     options: &Options,
 ) -> Result<Ordering, OrderError> {
-    let tree = minimum_spanning_tree(manifold, points)?;
+    let distinct = merge(manifold, points, minimum_spanning_tree(manifold, points)?);
     let order_one = |own: &[M::Point], start| order_as_one(manifold, variants, own, &Options { start, ..*options });
-    let Components { mut curves, outliers, .. } = components_by(points, &tree, options.start, order_one)?;
+    let Components { mut curves, outliers, .. } = components_by(points, &distinct, options.start, order_one)?;
     if curves.is_empty() {
         return order_as_one(manifold, variants, points, options);
     }
@@ -30,17 +30,14 @@ pub(crate) fn order_apart<M: Manifold>(
     if let Some(first) = options.start.and_then(|start| curves.iter().position(|c| c.rows.contains(&start))) {
         curves[..=first].rotate_right(1);
     }
-    let groups = merge(manifold, points, tree).groups;
     let is_apart = |group: &Vec<usize>| group.len() > 1 && outliers.binary_search(&group[0]).is_ok();
-    let equal_outliers = groups.into_iter().filter(is_apart).collect();
+    let equal_outliers = distinct.groups.into_iter().filter(is_apart).collect();
     Ok(together(points.len(), curves, outliers, equal_outliers))
 }
 
 fn together(n: usize, curves: Vec<Component>, outliers: Vec<usize>, equal_outliers: Vec<Vec<usize>>) -> Ordering {
     let components: Vec<Vec<usize>> = curves.iter().map(Component::order).collect();
-    let of_all = |part: fn(&Ordering) -> &Vec<Doubt>| {
-        curves.iter().flat_map(move |c| part(&c.ordering).iter().map(|doubt| in_input_rows(doubt, &c.rows))).collect()
-    };
+    let own_doubts = curves.iter().flat_map(|c| c.ordering.doubts.iter().map(|doubt| in_input_rows(doubt, &c.rows)));
     let own_groups = curves.iter().flat_map(|c| {
         c.ordering.duplicates.iter().map(|group| group.iter().map(|&k| c.rows[k]).collect::<Vec<usize>>())
     });
@@ -52,7 +49,14 @@ fn together(n: usize, curves: Vec<Component>, outliers: Vec<usize>, equal_outlie
     }
     let least = curves.iter().map(|c| c.ordering.verdict).min().unwrap_or(Verdict::Ambiguous);
     // What a point far from all curves stands for is not known.
-    let verdict = if outliers.is_empty() { least } else { least.min(Verdict::Plausible) };
+    let verdict = if outliers.is_empty() { least } else { Verdict::Ambiguous };
+    let last = components.last().and_then(|rows| rows.last()).copied();
+    let jumps = last.into_iter().chain(outliers.iter().copied()).zip(&outliers).map(|(from, &to)| Doubt {
+        at: [from, to],
+        why: "the order jumps to a point that stands apart from every curve; points of a curve between the two would settle it"
+            .to_owned(),
+    });
+    let doubts = own_doubts.chain(jumps).collect();
     let epsilon = |c: &&Component| c.ordering.certificate.epsilon.unwrap_or(0.0);
     let weakest = curves.iter().filter(|c| c.ordering.verdict == least);
     let weakest = weakest.max_by(|a, b| epsilon(a).total_cmp(&epsilon(b))).unwrap_or(&curves[0]);
@@ -62,7 +66,7 @@ fn together(n: usize, curves: Vec<Component>, outliers: Vec<usize>, equal_outlie
     Ordering {
         n,
         order: components.iter().flatten().chain(&outliers).copied().collect(),
-        topology: Topology::Open,
+        topology: if curves.len() == 1 { curves[0].ordering.topology } else { Topology::Open },
         method: if repaired { Method::Repaired } else { own_method },
         verdict,
         weight_stable: curves.iter().map(|c| c.ordering.weight_stable).reduce(stable).flatten(),
@@ -72,7 +76,7 @@ fn together(n: usize, curves: Vec<Component>, outliers: Vec<usize>, equal_outlie
         certificate: part(weakest).certificate,
         repaired: repaired_in_all(&curves),
         moved,
-        doubts: of_all(|ordering| &ordering.doubts),
+        doubts,
         components,
         outliers,
     }

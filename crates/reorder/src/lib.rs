@@ -31,6 +31,8 @@
 //! - both ends come near each other, but do not clearly meet;
 //! - two neighbours lie on each other's cut locus;
 //! - two neighbours both occur more than once;
+//! - points that differ by no more than the rounding of their coordinates come one after the other in a row, or were merged and leave
+//!   fewer than ten;
 //! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, as where a curve runs back beside
 //!   itself;
 //! - there are three to nine distinct points: too few to tell one curve from another;
@@ -44,8 +46,8 @@
 //! agree on one wrong order too often.
 //!
 //! An order by a method that was asked for ([`MethodChoice`]) is also doubted where the method's edges are no single curve, and where the
-//! minimum spanning tree has others. Several curves ordered apart ([`ComponentsChoice`]) are trusted as the least of them is; with
-//! outliers beside them, nothing is certified. Every doubt says between which two points one more would settle it.
+//! minimum spanning tree has others. Several curves ordered apart ([`ComponentsChoice`]) are trusted as the least of them is;
+//! every jump to an outlier is a doubt. Every doubt says between which two points one more would settle it.
 //!
 //! Samples are clean where nine of ten points miss the parabola through their neighbours by at most a tenth of a gap, which cannot have
 //! swapped two points; or nine of ten by at most a quarter, or half of them by at most a tenth, while at no more than five points in
@@ -58,17 +60,27 @@
 //! # Certified
 //!
 //! **Theorem.** Let C be a simple curve, an arc or a loop, in a complete Riemannian manifold, S finitely many points on it, the ends
-//! of an arc among them, and ρ > 0 such that (a) the distance to any point c nearer to C than ρ has one local minimum on C,
-//! and (b) consecutive points of S are less than 2ρ apart. Then every edge of a minimum spanning tree of S joins consecutive points.
+//! of an arc among them, and ρ > 0 such that (a) from any point c of the manifold, the distance to C has at most one local minimum,
+//! strict or not, that is below ρ, and (b) consecutive points of S are less than 2ρ apart. Then every edge of a minimum spanning tree
+//! of S joins consecutive points.
 //!
-//! *Proof.* Let pq be an edge of the tree, 2r its length, c its midpoint. The tree is minimal, so every arc of C from p to q holds two
-//! consecutive points that are at least 2r apart; hence r < ρ. Every component of the part of C within r of c holds a local
-//! minimum of the distance to c, so by (a) there is one component, and as p and q lie on its rim it is an arc from p to q. Between
-//! them C is nearer to c than r, for the distance has no second minimum there; so two points of that arc, other than the pair p, q,
-//! are less than 2r apart. Hence p and q are consecutive. ∎
+//! *Proof.* Let pq be an edge of the tree, 2r its length, c its midpoint, f the distance to c on C. The tree is minimal, so every arc
+//! of C from p to q holds two consecutive points that are at least 2r apart; hence r < ρ. Let K be the part of C where f ≤ r; it holds
+//! p and q, where f = r. K is connected: otherwise it would fall into two closed parts, and f is least on each of them at a local
+//! minimum on C, for near either part f > r elsewhere. So K is the whole loop, or an arc that holds p and q.
 //!
-//! In flat space (a) is a reach of ρ (Federer); elsewhere it also needs ρ below the injectivity radius, which makes the
-//! feet of normal geodesics the only candidates for minima. It improves on Theorem 6.1 of the thesis (gaps below ρ) by the factor 2.
+//! Call a stretch an arc in K between p and q, or one that leads from p or q on to an end of K without the other. Every stretch holds a
+//! local minimum on C that is neither p nor q: if f = r throughout, every inner point is one; otherwise f is least at an inner
+//! point, or at an end of K, beyond which f > r or C ends. Different stretches meet in p and q at most, so by (a) there is one: K is no
+//! loop, which has two, and it does not run on past p or q. K is an arc from p to q. Between them f < r, for a point with f = r there
+//! would part K into two arcs with a local minimum within each, by the same argument. So any two points of K other than the pair p, q are
+//! less than 2r apart. Hence no point of S is between p and q on K, and they are consecutive. ∎
+//!
+//! In flat space (a) follows from a reach of ρ: at a local minimum x the vector c − x is normal to C, and then x is the only point of C
+//! that is nearest to c, if ‖c − x‖ is below the reach (Federer, *Curvature Measures*, 4.8). It says nothing of minima farther away: from
+//! a point between the parallel sides of a stadium both sides have one. Elsewhere it also needs ρ below the injectivity radius, which
+//! makes the feet of normal geodesics the only candidates for minima. It improves on Theorem 6.1 of the thesis (gaps below ρ) by the
+//! factor 2.
 //!
 //! So a certified order asserts: **if** the curve is simple, has a reach ρ above `required_reach` (half the longest gap), and is
 //! left without a sample nowhere for 2ρ, **then** this order is its order, and no other curve of that kind through these points has
@@ -113,6 +125,7 @@ mod doubts;
 mod drawing;
 mod duplicates;
 mod edges;
+mod equality;
 mod error;
 mod finish;
 mod forest;
@@ -145,7 +158,7 @@ pub use edges::EdgeFigures;
 pub use error::OrderError;
 pub use nearest::nearest_chain;
 pub use nn_crust::nn_crust;
-pub use order::{MOST_REPAIRED_UNASKED, order};
+pub use order::{MOST_DENOISED, MOST_REPAIRED_UNASKED, order};
 pub use ordering::{
     ComponentsChoice, Doubt, Method, MethodChoice, Options, Ordering, Part, Repair, Repaired, Topology, TopologyChoice,
     Verdict,

@@ -39,10 +39,12 @@ pub(crate) fn order_named<M: Manifold>(
         at: [i, j],
         why: "the minimum spanning tree joins these two, which are no neighbours in this order".to_owned(),
     }));
+    // A chain is what comes of its start; elsewhere the start may be an end at one weight alone.
+    let anyhow = Options { start: options.start.filter(|_| options.method == MethodChoice::Nearest), ..*options };
     let mut stable = true;
     for Variant { manifold, change } in variants {
         let distinct = distinct_points(manifold, points, options.topology, options.start)?;
-        let kept = recover_named(manifold, points, distinct, &Options { start: None, ..*options })?.0.edges();
+        let kept = recover_named(manifold, points, distinct, &anyhow)?.0.edges();
         let lost = edges.iter().filter(|edge| kept.binary_search(edge).is_err());
         if let Some(&(i, j)) = lost.chain(kept.iter().filter(|edge| edges.binary_search(edge).is_err())).next() {
             stable = false;
@@ -111,7 +113,7 @@ fn recover_named<M: Manifold>(
         _ if is_loop => rotate_to(&mut rows, start_row.unwrap_or(0)),
         Some(start) if start == ends[0] => {}
         Some(start) if start == ends[1] => rows.reverse(),
-        Some(_) => return Err(OrderError::StartNotAnEnd { start: options.start.unwrap_or_default(), ends }),
+        Some(_) => return Err(OrderError::start_not_an_end(options.start.unwrap_or_default(), ends)),
         None if ends[0] > ends[1] => rows.reverse(),
         None => {}
     }

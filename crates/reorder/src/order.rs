@@ -25,6 +25,9 @@ use crate::walk::far_end;
 /// Sets of more points are repaired only on demand: the searches would take minutes.
 pub const MOST_REPAIRED_UNASKED: usize = 3000;
 
+/// Sets of more points are not denoised: the nearest of every point are sought among all, which would take minutes too.
+pub const MOST_DENOISED: usize = 30_000;
+
 /// So many points in a row may be in dispute where a curve crosses itself or turns sharply; where it runs beside itself, many more
 /// are.
 const LONGEST_DISPUTE: usize = 12;
@@ -36,7 +39,10 @@ const LONGEST_DISPUTE: usize = 12;
 /// unless [`Options::repair`] says otherwise, the order is repaired: see [`Method::Repaired`]. What may stand in
 /// [`Ordering::doubts`] is listed in the [crate documentation](crate#verdict).
 ///
-/// O(n²) time, O(n) memory. The neighbourhoods found do not depend on the order of the input, except between equal distances,
+/// O(n) memory. The tree and the examination of a path take about O(n log n) time where the manifold has an
+/// [`embedding`](Manifold::embedding), and O(n²) elsewhere. The search of a repair takes O(n²) for the near points and many times
+/// that for its kicks, unasked up to [`MOST_REPAIRED_UNASKED`] points only; [`Options::denoise`] takes O(n²), up to [`MOST_DENOISED`].
+/// NN-CRUST and the nearest-neighbour chain take O(n²); CRUST O(n log n), and O(p²) where its edges fall into p pieces. The neighbourhoods found do not depend on the order of the input, except between equal distances,
 /// where smaller rows win, nor on isometries of the manifold beyond rounding.
 ///
 /// # Errors
@@ -63,14 +69,14 @@ pub(crate) fn order_among<M: Manifold>(
     let of_weight = of_trees(&recovery, variants, points, &anywhere)?;
     let stable = of_weight.is_empty();
     examined.doubts.searchable.extend(of_weight);
-    let weight_stable = |found: Option<bool>| (!variants.is_empty()).then_some(found.unwrap_or(stable));
+    let tree_is_stable = (!variants.is_empty()).then_some(stable);
     let joined = options.topology == TopologyChoice::Closed && is_clean_arc(manifold, points, &recovery);
     let mendable = !examined.doubts.searchable.is_empty()
         || recovery.distinct.groups.len() < points.len() && !examined.doubts.firm.is_empty();
     if !mendable || joined || !may_repair(points.len(), options) {
         let recovery =
             if options.start.is_some() { recover(manifold, points, options, options.start)? } else { recovery };
-        return Ok(examined.answer(points.len(), recovery, weight_stable(None)));
+        return Ok(examined.answer(points.len(), recovery, tree_is_stable));
     }
     let problem = Problem::new(manifold, points);
     let mut found = sequence(manifold, points, &problem, TURNING, &[], options.topology);
@@ -83,12 +89,12 @@ pub(crate) fn order_among<M: Manifold>(
         examined.hear(agreement.doubts);
         let recovery =
             if options.start.is_some() { recover(manifold, points, options, options.start)? } else { recovery };
-        return Ok(examined.answer(points.len(), recovery, weight_stable(agreement.weight_stable)));
+        return Ok(examined.answer(points.len(), recovery, agreement.weight_stable.or(tree_is_stable)));
     }
     turn_to_start(&mut found, &name, options.start)?;
     let mut examined = examine_repaired(manifold, points, &found, &name);
     examined.hear(agreement.doubts);
-    let mut answer = examined.answer(points.len(), recovery, weight_stable(agreement.weight_stable));
+    let mut answer = examined.answer(points.len(), recovery, agreement.weight_stable);
     answer.topology = if found.closed { Topology::Closed } else { Topology::Open };
     answer.order = found.rows;
     answer.method = Method::Repaired;
@@ -103,6 +109,9 @@ fn order_denoised<M: Manifold>(
     points: &[M::Point],
     options: &Options,
 ) -> Result<Ordering, OrderError> {
+    if points.len() > MOST_DENOISED {
+        return Err(OrderError::TooManyToDenoise { count: points.len(), most: MOST_DENOISED });
+    }
     // Refuses what cannot be ordered before anything is measured.
     recover(manifold, points, &Options { start: None, ..*options }, options.start)?;
     let (onto_line, moved) = denoised(manifold, points, &Problem::new(manifold, points));
@@ -147,7 +156,7 @@ fn turn_to_start(found: &mut Sequence, name: &[usize], start: Option<usize>) -> 
         _ if found.closed => rotate_to(&mut found.rows, start.unwrap_or(0)),
         Some(start) if name[start] == name[first] => {}
         Some(start) if name[start] == name[last] => found.rows.reverse(),
-        Some(start) => return Err(OrderError::StartNotAnEnd { start, ends: [first, last] }),
+        Some(start) => return Err(OrderError::start_not_an_end(start, [first, last])),
         None if first > last => found.rows.reverse(),
         None => {}
     }
@@ -177,6 +186,7 @@ impl Examined {
     pub(crate) fn answer(self, n: usize, recovery: Recovery, weight_stable: Option<bool>) -> Ordering {
         let mut doubts = self.doubts.searchable;
         doubts.extend(self.doubts.firm);
+        doubts.extend(recovery.distinct.doubt.clone());
         // An order that nothing speaks against is one curve.
         let pieces = if doubts.is_empty() {
             Split::default()

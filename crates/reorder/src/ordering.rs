@@ -123,6 +123,7 @@ pub struct Options {
     /// Whether [`MethodChoice::Auto`] may repair.
     pub repair: Repair,
     /// Whether the points are noisy, and each is to be moved toward the parabola through its neighbours before they are ordered.
+    /// Takes O(n²) time, up to [`MOST_DENOISED`](crate::MOST_DENOISED) points.
     /// Never changes a point that is handed on: only the order comes from the moved ones, and a clean curve is better left alone.
     pub denoise: bool,
     /// Whether the points may be samples of several curves.
@@ -158,7 +159,8 @@ pub struct Ordering {
     pub n: usize,
     /// Every input row once, in recovered order. Equal points stand together, by row.
     pub order: Vec<usize>,
-    /// Whether the last point is followed by the first. Several curves in a row are open.
+    /// Whether the last point is followed by the first. Several curves in a row are open; of one curve with outliers, which come after
+    /// it and are no part of it, this is its own.
     pub topology: Topology,
     /// How the order was found.
     pub method: Method,

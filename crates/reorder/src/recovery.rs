@@ -44,8 +44,7 @@ pub(crate) fn recover<M: Manifold>(
         _ if closed => rotate_to(&mut rows, start.map_or(0, |(_, node)| tree[node])),
         Some((_, node)) if tree.neighbors(node).count() == 1 => rows = rows_along(tree, node),
         Some((start, _)) => {
-            let ends = [rows[0], rows[rows.len() - 1]];
-            return Err(OrderError::StartNotAnEnd { start, ends: [ends[0].min(ends[1]), ends[0].max(ends[1])] });
+            return Err(OrderError::start_not_an_end(start, [rows[0], rows[rows.len() - 1]]));
         }
         None if rows[0] > rows[rows.len() - 1] => rows = rows_along(tree, distinct.node_of(rows[rows.len() - 1])),
         None => {}

@@ -1,5 +1,7 @@
 //! One sequence through all points along edges that need not make up one curve.
 
+use std::collections::VecDeque;
+
 use petgraph::unionfind::UnionFind;
 
 use crate::drawing::{Drawing, Strand};
@@ -16,16 +18,18 @@ pub(crate) struct Thread {
 
 /// The curve itself, where the edges make up one. Elsewhere the shortest edges that no branch and no small loop comes of; the
 /// paths they make up are joined from end to nearest end, starting with the path of the smallest node and going on at either side.
+///
+/// O(n log n + p²) time for p paths, with two distances for every pair of them, and O(n) memory.
 pub(crate) fn thread(drawing: &Drawing, distance: impl Fn(usize, usize) -> f64) -> Thread {
     if let Ok(Strand { rows, closed }) = drawing.curve() {
         return Thread { nodes: rows, closed, left_out: Vec::new(), joins: Vec::new() };
     }
     let count = drawing.count();
-    let mut edges: Vec<[usize; 2]> = drawing.edges().to_vec();
-    edges.sort_by(|a, b| distance(a[0], a[1]).total_cmp(&distance(b[0], b[1])).then(a.cmp(b)));
+    let mut edges: Vec<(f64, [usize; 2])> = drawing.edges().iter().map(|&[a, b]| (distance(a, b), [a, b])).collect();
+    edges.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let (mut degree, mut joined) = (vec![0; count], UnionFind::<usize>::new(count));
     let (mut kept, mut left_out) = (Vec::new(), Vec::new());
-    for [a, b] in edges {
+    for (_, [a, b]) in edges {
         if degree[a] == 2 || degree[b] == 2 {
             left_out.push([a, b]);
         } else if joined.union(a, b) {
@@ -37,22 +41,32 @@ pub(crate) fn thread(drawing: &Drawing, distance: impl Fn(usize, usize) -> f64) 
     let mut paths: Vec<Vec<usize>> =
         Drawing::new(count, kept).strands().unwrap_or_default().into_iter().map(|strand| strand.rows).collect();
     let mut joins = Vec::new();
-    let mut nodes = if paths.is_empty() { Vec::new() } else { paths.remove(0) };
+    let mut nodes: VecDeque<usize> = if paths.is_empty() { VecDeque::new() } else { paths.remove(0).into() };
+    // Of every path left: from its first and last node to the first and last of all that is joined.
+    let ends_of = |path: &[usize]| [path[0], path[path.len() - 1]];
+    let away = |near: usize, path: &[usize]| ends_of(path).map(|far| distance(near, far));
+    let mut ways: Vec<[[f64; 2]; 2]> = match (nodes.front(), nodes.back()) {
+        (Some(&first), Some(&last)) => paths.iter().map(|path| [away(first, path), away(last, path)]).collect(),
+        _ => Vec::new(),
+    };
     while !paths.is_empty() {
-        let ends = [nodes[0], nodes[nodes.len() - 1]];
-        let ways = paths.iter().enumerate().flat_map(|(k, path)| {
-            [path[0], path[path.len() - 1]].into_iter().flat_map(move |far| ends.map(|near| (k, near, far)))
-        });
-        let Some((k, near, far)) = ways.min_by(|a, b| distance(a.1, a.2).total_cmp(&distance(b.1, b.2))) else { break };
-        joins.push([near, far]);
+        let each = (0..paths.len()).flat_map(|k| [(k, 0, 0), (k, 1, 0), (k, 0, 1), (k, 1, 1)]);
+        let shorter =
+            |a: &(usize, usize, usize), b: &(usize, usize, usize)| ways[a.0][a.1][a.2].total_cmp(&ways[b.0][b.1][b.2]);
+        let Some((k, at_back, far)) = each.min_by(shorter) else { break };
         let mut path = paths.swap_remove(k);
-        if near != ends[1] {
-            nodes.reverse();
-        }
-        if path[0] != far {
+        ways.swap_remove(k);
+        joins.push([if at_back == 1 { nodes[nodes.len() - 1] } else { nodes[0] }, ends_of(&path)[far]]);
+        if far == 1 {
             path.reverse();
         }
-        nodes.extend(path);
+        let end = path[path.len() - 1];
+        if at_back == 1 {
+            nodes.extend(path);
+        } else {
+            path.into_iter().for_each(|node| nodes.push_front(node));
+        }
+        ways.iter_mut().zip(&paths).for_each(|(way, path)| way[at_back] = away(end, path));
     }
-    Thread { nodes, closed: false, left_out, joins }
+    Thread { nodes: nodes.into(), closed: false, left_out, joins }
 }

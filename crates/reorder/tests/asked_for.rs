@@ -131,6 +131,12 @@ fn poses_are_ordered_by_name_and_the_weight_is_checked() {
     let denoised = Options { denoise: true, ..by(MethodChoice::NnCrust) };
     let denoised = order_weighted::<Se3>(&mixed, Weight::MetresPerRadian(0.3), &denoised).unwrap();
     assert_eq!((denoised.method, denoised.moved.len()), (Method::NnCrust, 80));
+    // The chain at other weights starts where it starts at this one.
+    for start in [7, 41] {
+        let chain = Options { start: Some(start), topology: TopologyChoice::Closed, ..by(MethodChoice::Nearest) };
+        let chain = order_weighted::<Se3>(&mixed, Weight::MetresPerRadian(0.3), &chain).unwrap();
+        assert_eq!((chain.order[0], chain.weight_stable), (start, Some(true)), "{:?}", chain.doubts);
+    }
     let refused = order_weighted::<Se3>(&mixed, Weight::Auto, &by(MethodChoice::Crust)).unwrap_err();
     assert_eq!(refused, OrderError::NotPlanar);
     assert_eq!(
@@ -139,7 +145,7 @@ fn poses_are_ordered_by_name_and_the_weight_is_checked() {
     );
     let huge = [Vector2::new(1e70, 0.0), Vector2::zeros()];
     let refused = order(&R2::default(), &huge, &by(MethodChoice::Crust)).unwrap_err().to_string();
-    assert!(refused.starts_with("CRUST cannot triangulate the points: "), "{refused}");
+    assert_eq!(refused, "CRUST cannot triangulate the points: a coordinate is beyond 1e60");
 }
 
 #[test]
@@ -190,7 +196,10 @@ fn several_curves_are_named_unasked_and_ordered_apart_when_asked() {
     assert_eq!(found.order, [found.components.concat(), found.outliers.clone()].concat());
     assert_eq!(found.topology, Topology::Open);
     // Certified curves, but nothing says what the outliers are.
-    assert_eq!((found.verdict, found.doubts.len()), (Verdict::Plausible, 0), "{:?}", found.doubts);
+    assert_eq!((found.verdict, found.doubts.len()), (Verdict::Ambiguous, 3), "{:?}", found.doubts);
+    for (doubt, jump) in found.doubts.iter().zip(found.order[found.n - 4..].windows(2)) {
+        assert_eq!(doubt.at, jump);
+    }
     assert_eq!(found.duplicates.len(), 1);
     for (component, part) in found.components.iter().zip(&found.parts) {
         let component = unshuffled(component, &rows);
@@ -246,6 +255,8 @@ fn one_curve_is_the_same_whether_or_not_there_might_be_several() {
     let far = [arc(0.0, 20), vec![Vector2::new(500.0, 0.0)]].concat();
     let at_outlier = order(&R2::default(), &far, &Options { start: Some(20), ..apart() });
     assert_eq!(at_outlier, Err(OrderError::StartApart { start: 20 }));
+    let beside = in_plane(&[ring(0.0, 40), vec![Vector2::new(500.0, 0.0)]].concat(), &apart());
+    assert_eq!((beside.topology, beside.outliers), (Topology::Closed, vec![40]));
 }
 
 /// Wherever it starts, it is the order that the same start by row gives.

@@ -8,7 +8,7 @@ use reorder::{Options, OrderError, TopologyChoice, Weight, automatic_weight, ord
 use se3_geom::nalgebra::{
     Isometry2, Matrix2, Quaternion, SVector, Similarity2, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4,
 };
-use se3_geom::{Euclidean, HeightJet, Manifold, MongePatch, Pose, R3, Se2, Se3, Sim2, So2, So3, Sphere};
+use se3_geom::{Euclidean, HeightJet, Manifold, MongePatch, Pose, R2, R3, Se2, Se3, Sim2, So2, So3, Sphere};
 use support::helix_pose;
 
 fn refusal(points: &[Vector3<f64>], topology: TopologyChoice, start: Option<usize>) -> OrderError {
@@ -28,7 +28,8 @@ fn assert_refused(error: &OrderError, expected: &OrderError, sentence: &str) {
 fn too_few_points() {
     for n in [0, 1] {
         let error = refusal(&line(n), TopologyChoice::Auto, None);
-        let sentence = format!("there are {n} points to order, but at least 2 are needed");
+        let there = if n == 1 { "there is 1 point" } else { "there are 0 points" };
+        let sentence = format!("{there} to order, but at least 2 are needed");
         assert_refused(&error, &OrderError::TooFewPoints { count: n as usize, needed: 2 }, &sentence);
     }
     let error = refusal(&line(2), TopologyChoice::Closed, None);
@@ -45,7 +46,11 @@ fn too_few_distinct_points() {
 #[test]
 fn all_points_equal() {
     let error = refusal(&[Vector3::y(); 5], TopologyChoice::Auto, None);
-    assert_refused(&error, &OrderError::AllEqual { count: 5 }, "all 5 points are equal, so there is nothing to order");
+    assert_refused(
+        &error,
+        &OrderError::AllEqual { count: 5 },
+        "all 5 points are equal up to rounding, so there is nothing to order",
+    );
 }
 
 #[test]
@@ -220,4 +225,12 @@ fn surfaces_refuse_what_is_no_point() {
         f64::INFINITY,
     );
     assert_refuses(&saddle, |t| Vector2::new(t, 0.5 * t), &NOT_FINITE.map(|x| Vector2::new(0.1, x)), &[]);
+}
+
+#[test]
+fn too_many_points_to_denoise() {
+    let points: Vec<Vector2<f64>> = (0..30_001).map(|k| Vector2::new(f64::from(k), 0.0)).collect();
+    let error = order(&R2::default(), &points, &Options { denoise: true, ..Options::default() }).unwrap_err();
+    let sentence = "30001 points are too many to denoise, which takes time with their square: 30000 at most";
+    assert_refused(&error, &OrderError::TooManyToDenoise { count: 30_001, most: reorder::MOST_DENOISED }, sentence);
 }

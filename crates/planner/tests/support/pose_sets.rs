@@ -34,7 +34,7 @@ impl PoseSet {
     /// start state.
     pub(crate) fn draw(robot: &Robot, seed: u64) -> Self {
         let mut random = Random::new(seed);
-        let (closed, from_joints) = (seed.is_multiple_of(2), seed / 2 % 2 == 0);
+        let (closed, from_joints) = (seed.is_multiple_of(2), (seed / 2).is_multiple_of(2));
         loop {
             let drawn = if from_joints {
                 from_joint_curve(robot, closed, &mut random)

@@ -2,6 +2,8 @@
 
 use se3_geom::{Embedding, Manifold};
 
+use crate::equality::LEAST_DIFFERENCE;
+
 use super::boruvka;
 use super::chord::Chords;
 use super::distinct::Distinct;
@@ -37,8 +39,8 @@ impl Coordinates {
                     turn_to_one_side(unit);
                 }
             }
-            // Negative zeros become positive.
-            point.iter_mut().for_each(|x| *x += 0.0);
+            // What has no square counts as nothing, and equal points have equal bits: negative zeros become positive.
+            point.iter_mut().for_each(|x| *x = if x.abs() < LEAST_DIFFERENCE { 0.0 } else { *x });
         }
         Some(Self { embedding, values, span })
     }

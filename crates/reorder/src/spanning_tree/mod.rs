@@ -22,6 +22,7 @@ use petgraph::graph::{NodeIndex, UnGraph};
 use petgraph::unionfind::UnionFind;
 use se3_geom::Manifold;
 
+use crate::equality::Equality;
 use crate::error::OrderError;
 use coordinates::Coordinates;
 use edge::Edge;
@@ -31,6 +32,8 @@ pub type Tree = UnGraph<usize, f64>;
 
 /// Up to so many points the dense algorithm is the faster one.
 const FEW: usize = 64;
+/// No longer distance has lost digits by underflow, at any weight that is used.
+const SUSPICIOUSLY_SHORT: f64 = 1e-100;
 
 /// The minimum spanning tree of the points under the manifold's own distance.
 ///
@@ -40,7 +43,8 @@ const FEW: usize = 64;
 /// any number of them; O(n²) time where a distance has no such form.
 ///
 /// # Errors
-/// [`OrderError::TooFewPoints`] for no point at all, [`OrderError::NonFinite`], [`OrderError::DistanceOverflow`].
+/// [`OrderError::TooFewPoints`] for no point at all, [`OrderError::NonFinite`], [`OrderError::DistanceOverflow`],
+/// [`OrderError::DistanceUnderflow`].
 pub fn minimum_spanning_tree<M: Manifold>(manifold: &M, points: &[M::Point]) -> Result<Tree, OrderError> {
     if points.is_empty() {
         return Err(OrderError::TooFewPoints { count: 0, needed: 1 });
@@ -61,6 +65,12 @@ pub fn minimum_spanning_tree<M: Manifold>(manifold: &M, points: &[M::Point]) -> 
     // Lengths that are no number come last.
     if let Some(edge) = edges.iter().find(|edge| !edge.length.is_finite()) {
         return Err(OrderError::DistanceOverflow { at: [edge.i as usize, edge.j as usize] });
+    }
+    let mut equality = Equality::new(manifold);
+    let shortest = edges.iter().take_while(|edge| edge.length < SUSPICIOUSLY_SHORT);
+    let lost = shortest.map(|edge| [edge.i as usize, edge.j as usize]);
+    if let Some(at) = lost.into_iter().find(|&[i, j]| equality.underflows(&points[i], &points[j])) {
+        return Err(OrderError::DistanceUnderflow { at });
     }
     let mut tree = Tree::with_capacity(points.len(), edges.len());
     for row in 0..points.len() {

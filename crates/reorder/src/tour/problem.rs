@@ -1,5 +1,7 @@
 //! What a tour costs: distances and turning, with the near ones of every point at hand.
 
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
 use se3_geom::Manifold;
 
 /// How many nearest points every point may be joined to by one move of the search.
@@ -18,6 +20,7 @@ pub(crate) struct Problem<'a, M: Manifold> {
     /// The nodes of `near` by themselves, which are looked up all the time.
     near_nodes: Vec<u32>,
     each: usize,
+    was_cut_short: AtomicBool,
 }
 
 /// A near point, with what joins it.
@@ -57,7 +60,15 @@ impl<'a, M: Manifold> Problem<'a, M> {
             }));
         }
         let near_nodes = near.iter().map(|near| near.node as u32).collect();
-        Self { manifold, points, near, near_nodes, each }
+        Self { manifold, points, near, near_nodes, each, was_cut_short: AtomicBool::new(false) }
+    }
+    /// Notes that a search ended before no move gained.
+    pub(super) fn cut_short(&self) {
+        self.was_cut_short.store(true, Relaxed);
+    }
+    /// Whether a search ended before no move gained.
+    pub(crate) fn was_cut_short(&self) -> bool {
+        self.was_cut_short.load(Relaxed)
     }
     /// How many points there are.
     pub(crate) fn len(&self) -> usize {

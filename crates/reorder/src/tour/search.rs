@@ -13,6 +13,8 @@ use super::ring::Ring;
 /// Only gains of more than this share of what is exchanged count: smaller ones are rounding, on which the search would go in
 /// circles.
 const RELATIVE_GAIN: f64 = 1e-9;
+/// Moves that an improvement makes at most, for every node: thirty times as many as any was seen to need.
+const MOST_MOVES: usize = 100;
 /// Stretches that a kick exchanges are at most this long, so that it can be mended near by.
 const KICK: usize = 8;
 /// No fewer kicks than this, where there is anything to kick.
@@ -81,6 +83,9 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         let mut random = Random::seeded(SEED);
         if !unsettled.is_empty() && kicks_per_node > 0 {
             for _ in 0..(kicks_per_node * unsettled.len()).max(FEWEST_KICKS) {
+                if self.problem.was_cut_short() {
+                    break;
+                }
                 let v = unsettled[random.below(unsettled.len())];
                 self.kick(v, &mut random);
             }
@@ -177,9 +182,17 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
     /// Moves until no node in the queue gains; the sum of all changes of cost.
     fn improve_touching(&mut self, touched: &mut Vec<usize>) -> f64 {
         let mut sum = 0.0;
+        let mut moves_left = MOST_MOVES * self.ring.len();
         while let Some(v) = self.queue.pop_front() {
             self.queued[v] = false;
             while let Some((best, delta)) = self.best_move(v) {
+                if moves_left == 0 {
+                    self.problem.cut_short();
+                    self.queue.clear();
+                    self.queued.fill(false);
+                    return sum;
+                }
+                moves_left -= 1;
                 sum += delta;
                 self.apply(best, touched);
             }

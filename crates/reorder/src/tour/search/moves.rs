@@ -100,7 +100,8 @@ impl<M: Manifold> Search<'_, '_, M> {
     pub(super) fn consider(&self, candidate: Move, best: &mut Option<(Move, f64)>) {
         let [before, after] = self.around(candidate);
         let before = self.cost_now(before.nodes());
-        let least = best.map_or(-RELATIVE_GAIN * before, |(_, least)| least);
+        // A gain on short edges, however real, is no bound for one on edges so long that it is their rounding.
+        let least = best.map_or(0.0, |(_, least)| least).min(-RELATIVE_GAIN * before);
         if let Some(after) = self.cost_below(after.nodes(), before + least) {
             *best = Some((candidate, after - before));
         }
