@@ -49,7 +49,7 @@ fn limits_are_not_broken_after_timing() {
                     Ok(timed) => {
                         assert!(timed.audit.limits_ok, "{name}: {:?}", timed.audit);
                         assert!(timed.audit.max_ratio.torque.unwrap() <= 1.0);
-                        assert_eq!(timed.audit, audit_under(&robot, &timed.trajectory, options.audit_rules()));
+                        assert_eq!(timed.audit, audit_under(&robot, &timed.trajectory, options.audit_rules(), None));
                     }
                     Err(ManipulatorError::LimitsNotMet { position_margin, .. }) => {
                         assert!(position_margin < 0.0, "{name}")
@@ -114,7 +114,7 @@ fn without_jerk_limits_motion_is_faster_and_the_audit_says_why() {
         fast.audit.limits_ok && ratio.velocity <= 1.0 && ratio.acceleration <= 1.0 && ratio.jerk > 2.0,
         "{ratio:?}"
     );
-    assert!(!audit_under(&robot, &fast.trajectory, AuditRules::default()).limits_ok);
+    assert!(!audit_under(&robot, &fast.trajectory, AuditRules::default(), None).limits_ok);
     // The averaging over a step and the audit's corrections: 0.01 s and a few parts in a thousand.
     let excess = fast.trajectory.duration_s() / fast.second_order_duration_s;
     assert!(excess > 1.0 - 1e-3 && excess < 1.02, "{excess}");
