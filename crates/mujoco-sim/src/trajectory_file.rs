@@ -18,7 +18,7 @@ pub fn read_trajectory(path: impl AsRef<Path>) -> Result<JointTrajectory> {
     let not_a_trajectory =
         |file: &str, reason: &str| SimError::TrajectoryFile { file: file.into(), reason: reason.into() };
     let table = read_table(path).map_err(|error| match error {
-        BagError::Empty { file } => not_a_trajectory(&file, "it has no rows"),
+        BagError::Empty { file } | BagError::NoRows { file } => not_a_trajectory(&file, "it has no rows"),
         BagError::NoHeader { file, .. } => {
             not_a_trajectory(&file, "the first line has to name the columns: t,JOINT.position,…")
         }

@@ -74,13 +74,13 @@ fn quick() -> Config {
 #[test]
 fn new_poses_take_over_a_lead_ahead_in_exactly_the_state_of_that_time() {
     let (mut session, running) = under_way(quick());
-    let asked_s = BEGAN_S + 0.603;
+    let asked_s = BEGAN_S + 0.203;
     on_track(&mut session, &running, asked_s);
     let job = only_job(session.handle(asked_s, line(0.15)));
     let now_s = asked_s + 0.2;
     let outcome = only_outcome(session.handle(now_s, Input::Finished(job.run())));
     let handover = outcome.request.handover.as_ref().unwrap();
-    assert!((0.4..0.41).contains(&(handover.at_s - 0.603)), "the first point a lead ahead: {}", handover.at_s);
+    assert!((0.4..0.41).contains(&(handover.at_s - 0.203)), "the first point a lead ahead: {}", handover.at_s);
     assert!(!handover.is_at_rest());
     let (plan, motion) = (outcome.result.as_ref().unwrap(), outcome.motion.as_ref().unwrap());
     assert_eq!(plan.trajectory.points[0], running.trajectory.state_at(handover.at_s));
@@ -108,6 +108,7 @@ fn a_late_plan_is_made_again_with_a_longer_lead() {
     let lead_s = BEGAN_S + outcome.request.handover.as_ref().unwrap().at_s - late_s;
     assert!(lead_s > 1.5 * 0.38, "{lead_s}");
     let ended_s = BEGAN_S + running.trajectory.duration_s() + 0.1;
+    on_track(&mut session, &running, late_s + 0.85);
     let at_the_end = only_job(session.handle(late_s + 0.9, Input::Finished(outcome)));
     on_track(&mut session, &running, ended_s);
     let outcome = only_outcome(session.handle(ended_s, Input::Finished(at_the_end.run())));

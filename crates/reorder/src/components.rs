@@ -160,6 +160,9 @@ pub fn order_components<M: Manifold>(
 ) -> Result<Components, OrderError> {
     check_points(manifold, points)?;
     let distinct = merge(manifold, points, minimum_spanning_tree(manifold, points)?);
+    if points.len() > 1 && distinct.tree.node_count() < 2 {
+        return Err(OrderError::AllEqual { count: points.len() });
+    }
     components_by(points, &distinct, options.start, |own, start| {
         order(manifold, own, &Options { start, components: ComponentsChoice::One, ..*options })
     })
