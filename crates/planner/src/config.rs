@@ -25,6 +25,9 @@ pub struct Config {
     pub require_joint_state: bool,
     /// A joint state older than this, in s, no longer says where the robot stands.
     pub joint_state_max_age_s: f64,
+    /// Whether new trajectories take over from one that is being executed, and refusals may stop it. The controller must heed the
+    /// stamps of what it is sent, by the same clock; where this is off, a robot under way is refused.
+    pub handover: bool,
     /// How far ahead, in s, a trajectory for new poses takes over from the one that is being executed. Planning that takes longer is
     /// done again with a longer lead.
     pub handover_lead_s: f64,
@@ -60,6 +63,7 @@ impl Default for Config {
             approach: true,
             require_joint_state: true,
             joint_state_max_age_s: 1.0,
+            handover: false,
             handover_lead_s: 1.0,
             handover_tolerance_rad: 0.05,
             on_refusal: OnRefusal::Stop,

@@ -171,7 +171,7 @@ impl Session {
 
     /// What the robot was told to do and has not done yet, unless it is seen to do something else.
     fn executing(&self, now_s: f64) -> Option<&Motion> {
-        let motion = self.motion.as_ref().filter(|motion| now_s < motion.ends_at_s())?;
+        let motion = self.motion.as_ref().filter(|motion| self.config.handover && now_s < motion.ends_at_s())?;
         self.off(motion).is_none().then_some(motion)
     }
 

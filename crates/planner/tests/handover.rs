@@ -77,7 +77,7 @@ impl Arm {
         let robot = Robot::shipped(name).unwrap();
         let standing = robot.preferred.as_slice().to_vec();
         // Shorter than by default, because the random trajectories last a few seconds only.
-        let config = Config { handover_lead_s: LEAD_S, ..Config::default() };
+        let config = Config { handover: true, handover_lead_s: LEAD_S, ..Config::default() };
         Self { session: Session::new(robot, config), began_s: 0.0, executed: None, standing }
     }
 

@@ -68,7 +68,7 @@ fn under_way(config: Config) -> (Session, Motion) {
 }
 
 fn quick() -> Config {
-    Config { handover_lead_s: 0.4, ..Config::default() }
+    Config { handover: true, handover_lead_s: 0.4, ..Config::default() }
 }
 
 #[test]
@@ -188,6 +188,14 @@ fn a_silent_robot_and_one_without_an_approach_are_not_taken_over() {
     let job = only_job(session.handle(BEGAN_S + 0.8, line(0.15)));
     let outcome = only_outcome(session.handle(BEGAN_S + 0.9, Input::Finished(job.run())));
     assert!(outcome.request.handover.is_some(), "what was cleared is still being executed");
+
+    let off = Config { handover: false, ..quick() };
+    let (mut session, running) = under_way(off);
+    on_track(&mut session, &running, BEGAN_S + 0.4);
+    for input in [line(0.15), no_pose()] {
+        let outcome = only_outcome(session.handle(BEGAN_S + 0.4, input));
+        assert!(outcome.result.is_err() && outcome.motion.is_none(), "{outcome:?}");
+    }
 
     let without = Config { approach: false, require_joint_state: false, ..quick() };
     let mut session = Session::new(Robot::shipped("ur5e").unwrap(), without);

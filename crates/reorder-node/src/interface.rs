@@ -1,6 +1,6 @@
 //! Topics and services of the node.
 
-use planner::{Outcome, Report};
+use planner::{Motion, Outcome, Report};
 use r2r::geometry_msgs::msg::PoseArray;
 use r2r::nav_msgs::msg::Path;
 use r2r::sensor_msgs::msg::JointState;
@@ -51,16 +51,26 @@ impl Publishers {
         })
     }
 
-    /// Publishes a plan or a refusal; the trajectory last, when everything that explains it is out.
-    pub(crate) fn publish(&self, robot: &planner::manipulator::Robot, outcome: &Outcome) -> r2r::Result<()> {
+    /// Publishes a plan or a refusal; what the robot has to do last, when everything that explains it is out.
+    pub(crate) fn publish(
+        &self,
+        robot: &planner::manipulator::Robot,
+        outcome: &Outcome,
+        stamp_ns: impl FnOnce(&Motion) -> i64,
+    ) -> r2r::Result<()> {
         let report = Report::of(&robot.name, &outcome.result);
         self.report.publish(&r2r::std_msgs::msg::String { data: report.to_json() })?;
-        let Ok(plan) = &outcome.result else { return self.withdraw_poses() };
-        let header = header(&robot.base_frame, outcome.request.stamp_ns);
-        self.path.publish(&path_message(&plan.path(), header.clone()))?;
-        // Equal poses once: whoever follows these must not meet the same waypoint twice. The report has every input index.
-        self.ordered_poses.publish(&pose_array(&plan.ordered_poses(&outcome.request), header))?;
-        self.trajectory.publish(&trajectory_message(&plan.trajectory, &robot.base_frame))
+        match &outcome.result {
+            Ok(plan) => {
+                let header = header(&robot.base_frame, outcome.request.stamp_ns);
+                self.path.publish(&path_message(&plan.path(), header.clone()))?;
+                // Equal poses once: whoever follows these must not meet the same waypoint twice. The report has every input index.
+                self.ordered_poses.publish(&pose_array(&plan.ordered_poses(&outcome.request), header))?;
+            }
+            Err(_) => self.withdraw_poses()?,
+        }
+        let Some(motion) = &outcome.motion else { return Ok(()) };
+        self.trajectory.publish(&trajectory_message(&motion.trajectory, &robot.base_frame, stamp_ns(motion)))
     }
 
     /// Empties the latched topics, so that latecomers do not take up what no longer holds.

@@ -52,8 +52,12 @@ pub(crate) fn path_message(poses: &[Pose], header: Header) -> Path {
     Path { poses: poses.iter().map(stamped).collect(), header }
 }
 
-/// A zero stamp in the header asks the controller to start at once.
-pub(crate) fn trajectory_message(planned: &JointTrajectory, base_frame: &str) -> trajectory::JointTrajectory {
+/// The stamp says when the controller is at time 0 of the trajectory; zero asks it to start at once.
+pub(crate) fn trajectory_message(
+    planned: &JointTrajectory,
+    base_frame: &str,
+    stamp_ns: i64,
+) -> trajectory::JointTrajectory {
     let recorded = planner::trajectory_message(planned, Default::default());
     let points = recorded.points.into_iter().map(|point| trajectory::JointTrajectoryPoint {
         positions: point.positions,
@@ -63,7 +67,7 @@ pub(crate) fn trajectory_message(planned: &JointTrajectory, base_frame: &str) ->
         time_from_start: Duration { sec: point.time_from_start.sec, nanosec: point.time_from_start.nanosec },
     });
     trajectory::JointTrajectory {
-        header: header(base_frame, 0),
+        header: header(base_frame, stamp_ns),
         joint_names: recorded.joint_names,
         points: points.collect(),
     }

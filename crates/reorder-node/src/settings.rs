@@ -32,7 +32,9 @@ pub(crate) fn from_parameters(
     parameters: impl IntoIterator<Item = (String, ParameterValue)>,
 ) -> Result<(Robot, Config), NodeError> {
     let mut tree = Mapping::new();
+    let mut simulated_time = false;
     for (name, value) in parameters {
+        simulated_time |= name == "use_sim_time" && value == ParameterValue::Bool(true);
         if !OF_ROS.contains(&name.as_str()) {
             insert(&mut tree, &name, yaml(&name, value)?)?;
         }
@@ -42,7 +44,9 @@ pub(crate) fn from_parameters(
         Some(value) => serde_yaml::from_value(value).map_err(|e| NodeError::Parameters(format!("robot: {e}")))?,
     };
     let text = serde_yaml::to_string(&tree).map_err(|e| NodeError::Parameters(e.to_string()))?;
-    let config = Config::from_yaml(&text).map_err(|e| NodeError::Parameters(e.to_string()))?;
+    let mut config = Config::from_yaml(&text).map_err(|e| NodeError::Parameters(e.to_string()))?;
+    // Stamps are taken from the system's clock: on another one they would mean another time.
+    config.handover &= !simulated_time;
     Ok((load(&robot)?, config))
 }
 
@@ -103,6 +107,15 @@ mod tests {
         assert_eq!(config.metres_per_radian, 2.0, "an integer is a number");
         assert_eq!(config.timing.rate_hz, 250.0);
         assert_eq!(config.path, Config::default().path);
+    }
+
+    /// Stamps by another clock than the controller's would start a trajectory at any time.
+    #[test]
+    fn simulated_time_turns_hand_overs_off() {
+        let wanted = ("handover", ParameterValue::Bool(true));
+        let handover =
+            |simulated| read(&[wanted.clone(), ("use_sim_time", ParameterValue::Bool(simulated))]).unwrap().1.handover;
+        assert!(handover(false) && !handover(true));
     }
 
     #[test]

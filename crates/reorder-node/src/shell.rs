@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use futures::StreamExt;
-use planner::{Input, Output, Session};
+use planner::{Input, Motion, Output, Session};
 use r2r::std_srvs::srv::Trigger;
 use r2r::{Node, ParameterValue, ServiceRequest};
 use tokio::signal::unix::{SignalKind, signal};
@@ -52,7 +52,8 @@ pub(crate) async fn run() -> Result<(), NodeError> {
         }
     });
 
-    let mut shell = Shell::new(Session::new(robot, config), publishers, logger);
+    let stamps = Stamps { started: Instant::now(), began_ns: 0, given: config.handover };
+    let mut shell = Shell::new(Session::new(robot, config), publishers, stamps, logger);
     loop {
         tokio::select! {
             _ = interrupt.recv() => break,
@@ -86,9 +87,41 @@ fn parameters(node: &Node) -> Vec<(String, ParameterValue)> {
     given.iter().map(|(name, parameter)| (name.clone(), parameter.value.clone())).collect()
 }
 
+/// The session's clock, and what it shows in ROS time.
+struct Stamps {
+    started: Instant,
+    /// ROS time when the session's clock was 0, in ns since the epoch.
+    began_ns: i64,
+    /// Whether trajectories are stamped; without a stamp they start when they arrive.
+    given: bool,
+}
+
+/// The two clocks may drift apart by this much. Following them more closely would shift a trajectory against the one it takes over
+/// from by the jitter of reading them.
+const SAME_CLOCK_NS: i64 = 1_000_000;
+
+impl Stamps {
+    fn now_s(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// When a motion begins, in ns since the epoch.
+    fn of(&mut self, motion: &Motion) -> i64 {
+        if !self.given {
+            return 0;
+        }
+        let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        let began_ns = since_epoch.as_nanos() as i64 - self.started.elapsed().as_nanos() as i64;
+        if (began_ns - self.began_ns).abs() > SAME_CLOCK_NS {
+            self.began_ns = began_ns;
+        }
+        self.began_ns + (motion.starts_at_s * 1e9).round() as i64
+    }
+}
+
 struct Shell {
     session: Session,
-    started: Instant,
+    stamps: Stamps,
     publishers: Publishers,
     logger: String,
     finished: mpsc::UnboundedReceiver<Input>,
@@ -96,13 +129,13 @@ struct Shell {
 }
 
 impl Shell {
-    fn new(session: Session, publishers: Publishers, logger: String) -> Self {
+    fn new(session: Session, publishers: Publishers, stamps: Stamps, logger: String) -> Self {
         let (finish, finished) = mpsc::unbounded_channel();
-        Self { session, started: Instant::now(), publishers, logger, finished, finish }
+        Self { session, stamps, publishers, logger, finished, finish }
     }
 
     fn handle(&mut self, input: Input, mut request: Option<ServiceRequest<Trigger::Service>>) {
-        for output in self.session.handle(self.started.elapsed().as_secs_f64(), input) {
+        for output in self.session.handle(self.stamps.now_s(), input) {
             match output {
                 Output::Run(job) => {
                     let finish = self.finish.clone();
@@ -124,9 +157,14 @@ impl Shell {
                             plan.trajectory.points.len(),
                             plan.trajectory.duration_s()
                         ),
+                        Err(refusal) if outcome.motion.is_some() => {
+                            r2r::log_warn!(&self.logger, "stopping, because there is no trajectory: {refusal}");
+                        }
                         Err(refusal) => r2r::log_warn!(&self.logger, "no trajectory: {refusal}"),
                     }
-                    if let Err(error) = self.publishers.publish(self.session.robot(), &outcome) {
+                    if let Err(error) =
+                        self.publishers.publish(self.session.robot(), &outcome, |motion| self.stamps.of(motion))
+                    {
                         r2r::log_error!(&self.logger, "publishing failed: {error}");
                     }
                 }
