@@ -6,8 +6,10 @@
 use petgraph::visit::EdgeRef;
 use se3_geom::Manifold;
 
+use crate::certificate::Certificate;
 use crate::curve::Curve;
 use crate::ordering::Doubt;
+use crate::sides::of_sides;
 use crate::smoothness::longest_run;
 use crate::spanning_tree::Tree;
 use crate::sweep::{LOCAL_EPSILON, Sweep};
@@ -24,6 +26,9 @@ const GAP_WINDOW: usize = 5;
 /// whatever they were sampled from: of random triples in a square every fourth did, of sets of five every twentieth; of eight samples
 /// of an arc that were plausible, some in a hundred were wrong.
 const FEWEST_POINTS: usize = 10;
+/// With fewer distinct points than this, half the longest gap must be at most this share of the reach.
+const FEW_IF_SPARSE: usize = 25;
+const SPARSE: f64 = 0.6;
 /// How many gaps in a row must alternate between longer and shorter before that is a doubt. A curve that runs back beside itself
 /// interleaves two passes, and then they all do; twelve gaps in random order alternate by chance once in ninety times, and then
 /// rarely pass the test of evenness too.
@@ -84,12 +89,27 @@ pub(crate) fn of_curve<M: Manifold>(
     let is_end = |k: usize| curve.previous(k).is_none() || curve.next(k).is_none();
     let (ends, inner): (Vec<_>, Vec<_>) = (0..curve.len()).partition(|&k| is_end(k));
     let of_vertices = |all: Vec<usize>| all.into_iter().flat_map(|k| of_vertex(curve, found, k)).collect::<Vec<_>>();
-    let firm = few.into_iter().chain(interleaving).chain(edges).chain(of_vertices(ends)).collect();
+    let firm =
+        few.into_iter().chain(interleaving).chain(of_sides(curve)).chain(edges).chain(of_vertices(ends)).collect();
     let in_dispute = |k: usize| found.rivals[k].is_some() || found.sparse[k].is_some();
     // A point between two that are in dispute is so too.
     let between = |k: usize| curve.previous(k).zip(curve.next(k)).is_some_and(|(a, b)| in_dispute(a) && in_dispute(b));
     let disputed: Vec<bool> = (0..curve.len()).map(|k| in_dispute(k) || between(k)).collect();
     Doubts { firm, searchable: of_vertices(inner), stretch: longest_run(&disputed, curve.closed) }
+}
+
+/// Few points that are sparse as well: of 468 random samples with plausible orders three were wrong, and all of these were such.
+pub(crate) fn of_few<M: Manifold>(curve: &Curve<M>, certificate: &Certificate) -> Option<Doubt> {
+    let epsilon = certificate.epsilon.filter(|&epsilon| epsilon > SPARSE)?;
+    if curve.len() >= FEW_IF_SPARSE {
+        return None;
+    }
+    let at = certificate.weakest.unwrap_or(curve.rows_at(0, curve.len() - 1));
+    let count = curve.len();
+    let why = format!(
+        "{count} distinct points are few for a curve that bends so much between them (half a gap is {epsilon:.2} of the reach)"
+    );
+    Some(Doubt { at, why })
 }
 
 /// The ends of an open curve, where they come near each other.

@@ -35,7 +35,9 @@
 //!   fewer than ten;
 //! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, as where a curve runs back beside
 //!   itself;
-//! - there are three to nine distinct points: too few to tell one curve from another;
+//! - there are three to nine distinct points: too few to tell one curve from another; or fewer than 25, and half the longest gap is more than
+//!   0.6 of the reach;
+//! - ten points in a row step from side to side, while every second one alone is smooth: the curve may run back beside itself;
 //! - for poses: the order changes when a radian counts for half or for twice as many metres.
 //!
 //! Where something in this list speaks against the order (and there are no more than [`MOST_REPAIRED_UNASKED`] points), the order
@@ -97,7 +99,11 @@
 //! - there are at least 12 distinct points.
 //!
 //! What it cannot assert: that the curve does nothing between two samples. A detour that no sample shows, or a second pass
-//! whose points fall exactly on the line of the first, breaks the premise and leaves no trace. The order within a certified
+//! whose points fall on the line of the first, or beside it by less than a tenth of a gap and in no regular alternation with it,
+//! breaks the premise and leaves no trace. Nor
+//! that a loop is one: the theorem gives the neighbours, and the closing edge is what a statistic of the gaps makes likely. An arc
+//! whose ends are less than two of its longest gaps apart passes for a loop where its gaps look independent
+//! ([`Options::topology`](Options) settles it). The order within a certified
 //! answer was never wrong on the random curves of `tests/random_orders.rs` (`cargo xtask soak orders`), sparse, uneven, noisy,
 //! crossing and retraced ones among them.
 //!
@@ -140,6 +146,7 @@ mod poses;
 mod recovery;
 mod repair;
 mod settling;
+mod sides;
 mod smoothness;
 mod spanning_tree;
 mod start;

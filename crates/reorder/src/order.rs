@@ -263,6 +263,7 @@ fn examine_curve<M: Manifold>(curve: &Curve<M>, repeated: &[bool], unsure_of_end
     let certified = certificate.conditions(curve.closed).iter().all(|condition| condition.holds);
     let explained = certified && look_independent(&gaps, curve.closed);
     let mut doubts = doubts::of_curve(curve, &gaps, &found, repeated, explained);
+    doubts.firm.extend(doubts::of_few(curve, &certificate));
     if unsure_of_ends {
         doubts.firm.push(doubts::of_ends(curve.rows_at(0, curve.len() - 1)));
     }
