@@ -13,6 +13,7 @@ use crate::sides::of_sides;
 use crate::smoothness::longest_run;
 use crate::spanning_tree::Tree;
 use crate::sweep::{LOCAL_EPSILON, Sweep};
+use crate::topology::longest_to_next;
 
 /// A gap longer than this many times the median of the gaps around it may be a jump to another piece of the curve.
 const LONG_GAP: f64 = 3.0;
@@ -112,9 +113,15 @@ pub(crate) fn of_few<M: Manifold>(curve: &Curve<M>, certificate: &Certificate) -
     Some(Doubt { at, why })
 }
 
-/// The ends of an open curve, where they come near each other.
-pub(crate) fn of_ends(at: [usize; 2]) -> Doubt {
-    Doubt { at, why: "the ends come so near to each other that the curve may be closed".to_owned() }
+/// The ends of an open curve, where they come near each other, or the longest gap of a loop, where it stands out.
+pub(crate) fn of_ends<M: Manifold>(curve: &Curve<M>, gaps: &[f64]) -> Doubt {
+    if !curve.closed {
+        let why = "the ends come so near to each other that the curve may be closed".to_owned();
+        return Doubt { at: curve.rows_at(0, curve.len() - 1), why };
+    }
+    let longest = (0..gaps.len()).max_by(|&a, &b| gaps[a].total_cmp(&gaps[b])).unwrap_or(0);
+    let why = format!("the gap is {:.1} times the longest other: the curve may be open here", longest_to_next(gaps));
+    Doubt { at: curve.rows_at(longest, (longest + 1) % curve.len()), why }
 }
 
 /// A doubt at the middle of the first stretch that looks like two passes of a curve whose points fall between each other: gaps

@@ -18,7 +18,7 @@ use crate::ordering::{
 use crate::recovery::{Recovery, recover, rows_along};
 use crate::repair::{Sequence, TURNING, sequence};
 use crate::sweep::sweep;
-use crate::topology::{beyond_ends, rotate_to};
+use crate::topology::{beyond_ends, clearly_closes, rotate_to};
 use crate::tour::Problem;
 use crate::walk::far_end;
 
@@ -265,9 +265,9 @@ fn examine_curve<M: Manifold>(curve: &Curve<M>, repeated: &[bool], unsure_of_end
     let mut doubts = doubts::of_curve(curve, &gaps, &found, repeated, explained);
     doubts.firm.extend(doubts::of_few(curve, &certificate));
     if unsure_of_ends {
-        doubts.firm.push(doubts::of_ends(curve.rows_at(0, curve.len() - 1)));
+        doubts.firm.push(doubts::of_ends(curve, &gaps));
     }
     // Nothing is certified that a doubt had to be taken back for.
-    let certified = certified && doubts.searchable.is_empty();
+    let certified = certified && doubts.searchable.is_empty() && (!curve.closed || clearly_closes(&gaps));
     Examined { certificate, certified, doubts }
 }
