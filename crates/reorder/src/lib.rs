@@ -37,6 +37,8 @@
 //!   fewer than ten;
 //! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, as where a curve runs back beside
 //!   itself;
+//! - the points were denoised ([`Options::denoise`]), and two neighbours are nearer than three deviations of the noise in their distance,
+//!   estimated from the moves;
 //! - there are three to nine distinct points: too few to tell one curve from another; or fewer than 25, and half the longest gap is more than
 //!   0.6 of the reach;
 //! - ten points in a row step from side to side, while every second one alone is smooth: the curve may run back beside itself;

@@ -118,6 +118,11 @@ fn order_denoised<M: Manifold>(
     let mut found = order_as_one(manifold, variants, &onto_line, &Options { denoise: false, ..*options })?;
     // What is certified are the moved points, not the curve that the given ones were sampled from.
     found.verdict = found.verdict.min(Verdict::Plausible);
+    let swappable = doubts::of_noise(manifold, &onto_line, &found, &moved);
+    if !swappable.is_empty() {
+        found.verdict = Verdict::Ambiguous;
+        found.doubts.extend(swappable);
+    }
     found.moved = moved;
     Ok(found)
 }

@@ -384,3 +384,35 @@ fn a_loop_with_one_gap_that_stands_out_may_be_open() {
     let ratio = wide.certificate.opening.unwrap();
     assert!(ratio > 1.5 && ratio < 2.0, "{ratio}");
 }
+
+/// Even samples of a circle with noise of some share of their gap, denoised: that takes away what is across the curve, and leaves neighbours
+/// swapped that the noise along it swapped.
+#[test]
+fn a_denoised_order_is_believed_only_where_noise_swaps_none() {
+    let denoised = |seed: u64, noise: f64| {
+        let mut random = Random::seeded(seed);
+        let radius = 100.0 / TAU;
+        let points: Vec<_> = (0..100)
+            .map(|k| TAU * f64::from(k) / 100.0)
+            .map(|t| {
+                let off = Vector2::new(random.gauss(), random.gauss()) * (noise / 2.0_f64.sqrt());
+                Vector2::new(radius * t.cos(), radius * t.sin()) + off
+            })
+            .collect();
+        order(&R2::default(), &points, &Options { denoise: true, ..Options::default() }).unwrap()
+    };
+    let truth = neighbours(&(0..100).collect::<Vec<_>>(), true);
+    let mut wrong = 0;
+    for seed in 0..20 {
+        let found = denoised(seed, 0.3);
+        let exact = neighbours(&found.order, found.topology == Topology::Closed) == truth;
+        wrong += usize::from(!exact);
+        assert!(exact || found.verdict == Verdict::Ambiguous, "seed {seed}");
+    }
+    assert!(wrong > 0, "no noise swapped any");
+    assert!(reasons(&denoised(0, 0.3)).contains("may have changed places"));
+    for seed in 0..5 {
+        let found = denoised(seed, 0.05);
+        assert_eq!(found.verdict, Verdict::Plausible, "{}", reasons(&found));
+    }
+}
