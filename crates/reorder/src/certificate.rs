@@ -7,7 +7,7 @@ use crate::curve::Curve;
 use crate::independence::look_independent;
 use crate::smoothness::{MISS_TO_GAP, Smoothness, smoothness};
 use crate::sweep::{Sweep, sweep};
-use crate::topology::beyond_ends;
+use crate::topology::{beyond_ends, longest_to_next};
 
 /// ε = max_gap/(2·reach) up to which an order is certified: the true reach may then be half the estimate before the theorem
 /// fails.
@@ -72,7 +72,8 @@ pub struct Certificate {
     pub usual_miss: f64,
     /// How many points in a row turn back against the turn before. A smooth curve does so at inflections only.
     pub zigzag: usize,
-    /// Distance of the ends (open), or closing gap (closed), in units of the longest other gap.
+    /// Distance of the ends in units of the longest gap (open), or the longest gap in units of the next (closed): the spanning tree closes
+    /// a loop there.
     pub opening: Option<f64>,
 }
 
@@ -145,8 +146,7 @@ impl Certificate {
         let Smoothness { turn_rad, roughness, zigzag, noise, usual_miss } = smoothness(curve, found.reach);
         let epsilons = edge_epsilons(gaps, found);
         let weakest = (0..epsilons.len()).max_by(|&a, &b| epsilons[a].total_cmp(&epsilons[b]));
-        let last = curve.len() - 1;
-        let longest_inside = gaps[..last].iter().copied().fold(0.0, f64::max);
+        let opening = if curve.closed { longest_to_next(gaps) } else { curve.distance(curve.len() - 1, 0) / max_gap };
         Self {
             reach: finite(found.reach),
             epsilon: finite(found.reach).map(|reach| max_gap / (2.0 * reach)),
@@ -160,7 +160,7 @@ impl Certificate {
             zigzag,
             noise,
             usual_miss,
-            opening: finite(curve.distance(last, 0) / longest_inside),
+            opening: finite(opening),
             ..Self::of_no_curve(curve.manifold, max_gap)
         }
     }

@@ -8,11 +8,12 @@ use se3_geom::Manifold;
 
 use crate::certificate::Certificate;
 use crate::curve::Curve;
-use crate::ordering::Doubt;
+use crate::ordering::{Doubt, Ordering, Topology};
 use crate::sides::of_sides;
 use crate::smoothness::longest_run;
 use crate::spanning_tree::Tree;
 use crate::sweep::{LOCAL_EPSILON, Sweep};
+use crate::topology::longest_to_next;
 
 /// A gap longer than this many times the median of the gaps around it may be a jump to another piece of the curve.
 const LONG_GAP: f64 = 3.0;
@@ -70,6 +71,34 @@ pub(crate) struct Doubts {
     pub(crate) stretch: usize,
 }
 
+/// Noise across the curve, in units of the root mean square of the moves that take it away: the parabolas follow some of it. On circles
+/// in the plane, with noise of a twentieth to a half of a gap, it is about 1.9 times as much.
+const NOISE_TO_MOVES: f64 = 2.0;
+/// Neighbours that are nearer than so many deviations of the noise in their distance may have changed places.
+const SWAPPING: f64 = 3.0;
+/// Places where noise may have swapped points that are written out.
+const MOST_SWAPS: usize = 20;
+
+/// Neighbours so near each other that noise may have swapped them, the nearest first. Moves take away the noise across the curve only; along
+/// it there is no more of it in any one direction, and √2 times that in the distance of two points.
+pub(crate) fn of_noise<M: Manifold>(manifold: &M, points: &[M::Point], found: &Ordering, moved: &[f64]) -> Vec<Doubt> {
+    let mean_square = moved.iter().map(|m| m * m).sum::<f64>() / moved.len() as f64;
+    let reach_of_noise = SWAPPING * std::f64::consts::SQRT_2 * NOISE_TO_MOVES * mean_square.sqrt();
+    let rows = found.distinct();
+    let closing = (found.topology == Topology::Closed).then(|| [rows[rows.len() - 1], rows[0]]);
+    let pairs = rows.windows(2).map(|w| [w[0], w[1]]).chain(closing);
+    let gaps = pairs.map(|at| (manifold.distance(&points[at[0]], &points[at[1]]), at));
+    let mut near: Vec<_> = gaps.filter(|&(gap, _)| gap < reach_of_noise).collect();
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let why = |gap: f64| {
+        let share = gap * SWAPPING / reach_of_noise;
+        format!(
+            "the gap is {share:.1} times what noise of the size of the moves changes it by: both may have changed places"
+        )
+    };
+    near.into_iter().take(MOST_SWAPS).map(|(gap, at)| Doubt { at, why: why(gap) }).collect()
+}
+
 /// Every doubt about an order of distinct points; `repeated` tells which rows stand for several equal points.
 /// Long, short and alternating gaps are no doubts where they are `explained`: dense samples that were thrown independently have them.
 pub(crate) fn of_curve<M: Manifold>(
@@ -112,9 +141,15 @@ pub(crate) fn of_few<M: Manifold>(curve: &Curve<M>, certificate: &Certificate) -
     Some(Doubt { at, why })
 }
 
-/// The ends of an open curve, where they come near each other.
-pub(crate) fn of_ends(at: [usize; 2]) -> Doubt {
-    Doubt { at, why: "the ends come so near to each other that the curve may be closed".to_owned() }
+/// The ends of an open curve, where they come near each other, or the longest gap of a loop, where it stands out.
+pub(crate) fn of_ends<M: Manifold>(curve: &Curve<M>, gaps: &[f64]) -> Doubt {
+    if !curve.closed {
+        let why = "the ends come so near to each other that the curve may be closed".to_owned();
+        return Doubt { at: curve.rows_at(0, curve.len() - 1), why };
+    }
+    let longest = (0..gaps.len()).max_by(|&a, &b| gaps[a].total_cmp(&gaps[b])).unwrap_or(0);
+    let why = format!("the gap is {:.1} times the longest other: the curve may be open here", longest_to_next(gaps));
+    Doubt { at: curve.rows_at(longest, (longest + 1) % curve.len()), why }
 }
 
 /// A doubt at the middle of the first stretch that looks like two passes of a curve whose points fall between each other: gaps

@@ -29,12 +29,16 @@
 //!   its other neighbour and on the same side; past an open end, nearer than twice the longest of the five last gaps;
 //! - the sampling parameter ε at a point, from its gaps and its smallest tangent ball through another sample, is above 0.72;
 //! - both ends come near each other, but do not clearly meet;
+//! - the longest gap of a loop is more than 1.5 times the next, or exceeds it by more than 3.5 mean gaps where the gaps look like those of
+//!   independent points: it may be open there, unless a loop is asked for;
 //! - two neighbours lie on each other's cut locus;
 //! - two neighbours both occur more than once;
 //! - points that differ by no more than the rounding of their coordinates come one after the other in a row, or were merged and leave
 //!   fewer than ten;
 //! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, as where a curve runs back beside
 //!   itself;
+//! - the points were denoised ([`Options::denoise`]), and two neighbours are nearer than three deviations of the noise in their distance,
+//!   estimated from the moves;
 //! - there are three to nine distinct points: too few to tell one curve from another; or fewer than 25, and half the longest gap is more than
 //!   0.6 of the reach;
 //! - ten points in a row step from side to side, while every second one alone is smooth: the curve may run back beside itself;
@@ -95,15 +99,16 @@
 //! - the samples are smooth, not noisy: each point misses the parabola through three neighbours by no more than a third
 //!   derivative of 20/reach² explains, or by less than a tenth of the shortest gap there, which cannot have swapped two points; and at
 //!   no more than three points in a row does the order turn back against the turn before;
-//! - the ends of an arc are at least 4 times the longest gap apart, the closing gap of a loop is at most twice the next;
+//! - the ends of an arc are at least 4 times the longest gap apart, the longest gap of a loop is at most 1.1 times the next, or at most
+//!   twice the next and 3.5 mean gaps longer where the gaps look like those of independent points;
 //! - there are at least 12 distinct points.
 //!
 //! What it cannot assert: that the curve does nothing between two samples. A detour that no sample shows, or a second pass
 //! whose points fall on the line of the first, or beside it by less than a tenth of a gap and in no regular alternation with it,
 //! breaks the premise and leaves no trace. Nor
 //! that a loop is one: the theorem gives the neighbours, and the closing edge is what a statistic of the gaps makes likely. An arc
-//! whose ends are less than two of its longest gaps apart passes for a loop where its gaps look independent
-//! ([`Options::topology`](Options) settles it). The order within a certified
+//! whose ends are at most 3.5 mean gaps farther apart than its longest gap passes for a loop where its gaps look independent: the longest
+//! gap of a loop exceeds the next by more once in 33 times ([`Options::topology`](Options) settles it). The order within a certified
 //! answer was never wrong on the random curves of `tests/random_orders.rs` (`cargo xtask soak orders`), sparse, uneven, noisy,
 //! crossing and retraced ones among them.
 //!

@@ -15,7 +15,7 @@ use crate::order::examine_rows;
 use crate::ordering::{Doubt, Method, MethodChoice, Options, Ordering, TopologyChoice};
 use crate::recovery::{Recovery, distinct_points};
 use crate::thread::{Thread, thread};
-use crate::topology::{Closing, closing, rotate_to};
+use crate::topology::{Closing, closing, may_be_open, rotate_to};
 
 /// Places of one kind that are written out as doubts.
 const MOST_DOUBTS: usize = 20;
@@ -105,7 +105,8 @@ fn recover_named<M: Manifold>(
         TopologyChoice::Open => false,
         TopologyChoice::Closed => true,
     };
-    let unsure_of_ends = options.topology == TopologyChoice::Auto && !is_loop && ends != Closing::Apart;
+    let unsure = if is_loop { may_be_open(&path.joined().gaps()) } else { ends != Closing::Apart };
+    let unsure_of_ends = options.topology == TopologyChoice::Auto && unsure;
     let start_row = start.map(row_of);
     let ends = [rows[0], rows[rows.len() - 1]];
     match start_row {

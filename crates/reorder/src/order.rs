@@ -18,7 +18,7 @@ use crate::ordering::{
 use crate::recovery::{Recovery, recover, rows_along};
 use crate::repair::{Sequence, TURNING, sequence};
 use crate::sweep::sweep;
-use crate::topology::{beyond_ends, rotate_to};
+use crate::topology::{beyond_ends, clearly_closes, rotate_to};
 use crate::tour::Problem;
 use crate::walk::far_end;
 
@@ -118,6 +118,11 @@ fn order_denoised<M: Manifold>(
     let mut found = order_as_one(manifold, variants, &onto_line, &Options { denoise: false, ..*options })?;
     // What is certified are the moved points, not the curve that the given ones were sampled from.
     found.verdict = found.verdict.min(Verdict::Plausible);
+    let swappable = doubts::of_noise(manifold, &onto_line, &found, &moved);
+    if !swappable.is_empty() {
+        found.verdict = Verdict::Ambiguous;
+        found.doubts.extend(swappable);
+    }
     found.moved = moved;
     Ok(found)
 }
@@ -265,9 +270,9 @@ fn examine_curve<M: Manifold>(curve: &Curve<M>, repeated: &[bool], unsure_of_end
     let mut doubts = doubts::of_curve(curve, &gaps, &found, repeated, explained);
     doubts.firm.extend(doubts::of_few(curve, &certificate));
     if unsure_of_ends {
-        doubts.firm.push(doubts::of_ends(curve.rows_at(0, curve.len() - 1)));
+        doubts.firm.push(doubts::of_ends(curve, &gaps));
     }
     // Nothing is certified that a doubt had to be taken back for.
-    let certified = certified && doubts.searchable.is_empty();
+    let certified = certified && doubts.searchable.is_empty() && (!curve.closed || clearly_closes(&gaps));
     Examined { certificate, certified, doubts }
 }

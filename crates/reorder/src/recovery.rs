@@ -11,7 +11,7 @@ use crate::duplicates::{Distinct, merge};
 use crate::error::OrderError;
 use crate::ordering::{Options, TopologyChoice};
 use crate::spanning_tree::{Tree, minimum_spanning_tree};
-use crate::topology::{Closing, closing, rotate_to};
+use crate::topology::{Closing, closing, may_be_open, rotate_to};
 use crate::walk::{far_end, is_path, walk};
 
 /// Distinct points in order: `rows` holds the first row of every group of equal points.
@@ -39,6 +39,8 @@ pub(crate) fn recover<M: Manifold>(
         TopologyChoice::Open => false,
         TopologyChoice::Closed => true,
     };
+    let unsure = if closed { may_be_open(&path.joined().gaps()) } else { ends == Closing::Near };
+    let unsure_of_ends = options.topology == TopologyChoice::Auto && unsure;
     let start = options.start.map(|row| (row, distinct.node_of(row)));
     match start {
         _ if closed => rotate_to(&mut rows, start.map_or(0, |(_, node)| tree[node])),
@@ -49,7 +51,6 @@ pub(crate) fn recover<M: Manifold>(
         None if rows[0] > rows[rows.len() - 1] => rows = rows_along(tree, distinct.node_of(rows[rows.len() - 1])),
         None => {}
     }
-    let unsure_of_ends = options.topology == TopologyChoice::Auto && ends == Closing::Near && !closed;
     Ok(Recovery { distinct, rows, closed, unsure_of_ends })
 }
 

@@ -5,7 +5,7 @@ use tracing::debug_span;
 
 use crate::curve::Curve;
 use crate::ordering::TopologyChoice;
-use crate::topology::{Closing, closing};
+use crate::topology::{Closing, closing, may_be_open};
 use crate::tour::{Effort, Problem, closed_tour, open_path, starts};
 
 /// What a unit of turning costs in units of length where the order is taken from.
@@ -55,7 +55,10 @@ pub(crate) fn sequence<M: Manifold>(
     }
     let ends = |rows: &[usize]| closing(&Curve::new(manifold, points, rows, false));
     match ends(&tour) {
-        Closing::Meets if closes(&tour, CLOSING_COST) => Sequence { rows: tour, closed: true, unsure_of_ends: false },
+        Closing::Meets if closes(&tour, CLOSING_COST) => {
+            let unsure_of_ends = may_be_open(&Curve::new(manifold, points, &tour, true).gaps());
+            Sequence { rows: tour, closed: true, unsure_of_ends }
+        }
         _ => {
             let unsure_of_ends = ends(&open) != Closing::Apart;
             Sequence { rows: open, closed: false, unsure_of_ends }

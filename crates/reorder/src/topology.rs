@@ -17,6 +17,12 @@ const EXCEEDING: f64 = 2.0;
 /// Elsewhere it is at most this many times the longest of the gaps next to both ends.
 const CLOSING_TO_LOCAL: f64 = 2.0;
 
+/// A loop whose longest gap exceeds the next by more than this is doubted: in mean gaps where they look like those of independent points,
+/// which exceed so once in e^3.5 = 33 loops.
+const DOUBTFUL_EXCESS: f64 = 3.5;
+/// And as a multiple of the next elsewhere.
+const DOUBTFUL_RATIO: f64 = 1.5;
+
 /// What the distance between both ends of a path says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Closing {
@@ -54,6 +60,32 @@ pub(crate) fn closing<M: Manifold>(path: &Curve<M>) -> Closing {
         (false, true) if closing_gap <= suspicious => Closing::Near,
         (false, _) => Closing::Apart,
     }
+}
+
+/// How many times the longest gap of a loop is longer than the next: it is where the loop may have been closed by mistake.
+pub(crate) fn longest_to_next(gaps: &[f64]) -> f64 {
+    let [longest, next] = two_longest(gaps);
+    longest / next
+}
+
+/// Whether a loop with these gaps, the closing one included, may as well be an arc. The gaps between independent points of a loop are
+/// uniform on a simplex, and by P. V. Sukhatme (1937) the longest exceeds the next by an exponential variable of one mean gap.
+pub(crate) fn may_be_open(gaps: &[f64]) -> bool {
+    let [longest, next] = two_longest(gaps);
+    if look_independent(gaps, true) {
+        longest - next > DOUBTFUL_EXCESS * gaps.iter().sum::<f64>() / gaps.len() as f64
+    } else {
+        longest > DOUBTFUL_RATIO * next
+    }
+}
+
+/// Whether the longest gap of a loop is what such gaps are: even ones hardly differ, independent ones do.
+pub(crate) fn clearly_closes(gaps: &[f64]) -> bool {
+    longest_to_next(gaps) <= CLOSING_TO_LONGEST[0] || look_independent(gaps, true) && !may_be_open(gaps)
+}
+
+fn two_longest(gaps: &[f64]) -> [f64; 2] {
+    gaps.iter().fold([0.0; 2], |[longest, next], &gap| [longest.max(gap), next.max(gap.min(longest))])
 }
 
 /// Turns a closed sequence so that it starts with `first` and goes toward the neighbour with the smaller row.

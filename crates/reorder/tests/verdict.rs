@@ -6,7 +6,7 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use reorder::{Options, Ordering, Repair, Topology, Verdict, order, order_poses};
+use reorder::{Options, Ordering, Repair, Topology, TopologyChoice, Verdict, order, order_poses};
 use se3_geom::nalgebra::{UnitQuaternion, Vector2, Vector3};
 use se3_geom::{Pose, R2, R3, So3};
 use support::{Random, neighbours, shuffled, unshuffled};
@@ -351,4 +351,68 @@ fn a_tremor_far_below_the_gap_is_no_noise() {
     assert!(tremor.certificate.zigzag > 5 && noise.certificate.zigzag > 5, "{:?}", tremor.certificate);
     assert_eq!(tremor.verdict, Verdict::Plausible, "{:?} {}", tremor.certificate, reasons(&tremor));
     assert_eq!(noise.verdict, Verdict::Ambiguous, "{:?}", noise.certificate);
+}
+
+/// Independent samples of a circle, one stretch of which is left out: the loop's longest gap exceeds the next by more than 3.5 mean gaps once
+/// in 33 times only.
+#[test]
+fn a_loop_with_one_gap_that_stands_out_may_be_open() {
+    let ring = |excess: f64, topology| {
+        let mut random = Random::seeded(25);
+        let mut gaps: Vec<f64> = (0..200).map(|_| -(0.5 - 0.5 * random.signed()).max(1e-9).ln()).collect();
+        let mean = gaps.iter().sum::<f64>() / 200.0;
+        gaps.push(gaps.iter().copied().fold(0.0, f64::max) + excess * mean);
+        let around: f64 = gaps.iter().sum();
+        let mut along = 0.0;
+        let points: Vec<_> = gaps
+            .iter()
+            .map(|gap| {
+                along += gap;
+                let (s, c) = (TAU * along / around).sin_cos();
+                Vector2::new(s, c)
+            })
+            .collect();
+        order(&R2::default(), &points, &Options { topology, ..Options::default() }).unwrap()
+    };
+    let usual = ring(1.5, TopologyChoice::Auto);
+    assert_eq!((usual.topology, usual.verdict), (Topology::Closed, Verdict::Certified), "{}", reasons(&usual));
+    let wide = ring(4.5, TopologyChoice::Auto);
+    assert!(doubted(&wide, [199, 200], "may be open here"), "{:?} {}", wide.topology, reasons(&wide));
+    let asked = ring(4.5, TopologyChoice::Closed);
+    assert_eq!((asked.topology, asked.verdict), (Topology::Closed, Verdict::Plausible), "{}", reasons(&asked));
+    // Row 0 comes first, and the gap is elsewhere.
+    let ratio = wide.certificate.opening.unwrap();
+    assert!(ratio > 1.5 && ratio < 2.0, "{ratio}");
+}
+
+/// Even samples of a circle with noise of some share of their gap, denoised: that takes away what is across the curve, and leaves neighbours
+/// swapped that the noise along it swapped.
+#[test]
+fn a_denoised_order_is_believed_only_where_noise_swaps_none() {
+    let denoised = |seed: u64, noise: f64| {
+        let mut random = Random::seeded(seed);
+        let radius = 100.0 / TAU;
+        let points: Vec<_> = (0..100)
+            .map(|k| TAU * f64::from(k) / 100.0)
+            .map(|t| {
+                let off = Vector2::new(random.gauss(), random.gauss()) * (noise / 2.0_f64.sqrt());
+                Vector2::new(radius * t.cos(), radius * t.sin()) + off
+            })
+            .collect();
+        order(&R2::default(), &points, &Options { denoise: true, ..Options::default() }).unwrap()
+    };
+    let truth = neighbours(&(0..100).collect::<Vec<_>>(), true);
+    let mut wrong = 0;
+    for seed in 0..20 {
+        let found = denoised(seed, 0.3);
+        let exact = neighbours(&found.order, found.topology == Topology::Closed) == truth;
+        wrong += usize::from(!exact);
+        assert!(exact || found.verdict == Verdict::Ambiguous, "seed {seed}");
+    }
+    assert!(wrong > 0, "no noise swapped any");
+    assert!(reasons(&denoised(0, 0.3)).contains("may have changed places"));
+    for seed in 0..5 {
+        let found = denoised(seed, 0.05);
+        assert_eq!(found.verdict, Verdict::Plausible, "{}", reasons(&found));
+    }
 }
