@@ -115,10 +115,22 @@ impl Smoothed {
         if s >= self.profile.ends[1] {
             return after;
         }
+        let mut time = 0.5 * (before + after);
         for _ in 0..60 {
-            let middle = 0.5 * (before + after);
-            if self.at(middle)[0] < s { before = middle } else { after = middle }
+            let [position, speed, _] = self.at(time);
+            if position < s {
+                before = time
+            } else {
+                after = time
+            }
+            // Newton's step, unless it leaves the bracket or the profile stands still.
+            let next = time + (s - position) / speed;
+            let next = if next > before && next < after { next } else { 0.5 * (before + after) };
+            if (next - time).abs() <= 1e-12 * self.duration() {
+                return next;
+            }
+            time = next;
         }
-        0.5 * (before + after)
+        time
     }
 }

@@ -64,9 +64,9 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
     let simple = || {
         let profile = single_quintic(path, travel, &bounds.limits, 1.0 / options.rate_hz);
         let duration = profile.duration();
-        (profile, duration)
+        (duration, profile, duration)
     };
-    let (profile, second_order_duration_s) = if travel < TINY {
+    let (duration, profile, second_order_duration_s) = if travel < TINY {
         simple()
     } else {
         match optimised(path, &bounds, options, &sampling) {
@@ -75,13 +75,16 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
             other => other?,
         }
     };
-    let trajectory = slowed_until_legal(path, &profile, &bounds, &sampling)?;
+    let (trajectory, audit) = slowed_until_legal(path, &profile, duration, &bounds, &sampling)?;
     if let Some(wanted) = options.constant_tool_speed_m_s {
         constant_speed::check(&bounds, path, &profile, &trajectory, wanted)?;
     }
     let stretch = trajectory.duration_s() / profile.duration();
     let knot_times_s = path.pose_parameters().iter().map(|&s| profile.time_at(s) * stretch).collect();
-    let audit = audit_under(robot, &trajectory, options.audit_rules(), None);
+    let audit = match bounds.limits == robot.limits {
+        true => audit,
+        false => audit_under(robot, &trajectory, options.audit_rules(), None),
+    };
     Ok(TimedPath { trajectory, knot_times_s, audit, second_order_duration_s })
 }
 
@@ -122,13 +125,14 @@ fn single_quintic(path: &JointPath, travel: f64, limits: &Limits, shortest: f64)
     Smoothed::new(profile, 0.0)
 }
 
-/// The best of several rounds of solving and tightening, with the duration of the second-order solution.
+/// The best of several rounds of solving and tightening: how long it takes once it is slowed down by what the audit found, the
+/// profile, and the duration of the second-order solution.
 fn optimised(
     path: &JointPath,
     bounds: &Bounds<'_>,
     options: &TimingOptions,
     sampling: &Sampling<'_>,
-) -> Result<(Smoothed, f64)> {
+) -> Result<(f64, Smoothed, f64)> {
     let (mut gridpoints, second_order_duration) = grid(path, bounds, options, 1)?;
     let jerk_limited = options.limits == JointLimits::Jerk;
     let window = WINDOW_STEPS[usize::from(!jerk_limited)] / sampling.rate_hz;
@@ -147,29 +151,31 @@ fn optimised(
         };
         let trajectory = sample(path, &profile, profile.duration(), sampling)?;
         let Found { audit, slowdown } = against(bounds, &trajectory);
-        let duration = profile.duration() * slowdown.max(1.0);
+        // The first solution is linearised about one without jerk limits; the second, about the first, is faster.
+        let good_enough = slowdown < GOOD_ENOUGH && (round > 0 || !jerk_limited);
+        let too_coarse = round == 0 && slowdown > TOO_COARSE;
         let too_strong = bounds.rules.torque && audit.max_ratio.torque.is_some_and(|ratio| ratio > 1.0);
         seed = Some(squared_speeds);
-        if round == 0 && slowdown > TOO_COARSE && !too_strong {
+        if too_coarse && !too_strong {
             gridpoints = grid(path, bounds, options, 2)?.0;
             seed = None;
-        } else {
-            tighten(&mut gridpoints, bounds, &trajectory, &profile);
+        } else if !good_enough {
+            tighten(&mut gridpoints, bounds, &trajectory, &profile, too_strong);
         }
-        if too_strong {
+        if too_strong && !good_enough {
             // After the tightening: by how much torques are too great while nothing limits them says nothing of what will be left.
             gridpoints.limit_torque(bounds)?;
         }
+        let duration = slowed(&trajectory, slowdown);
         if best.as_ref().is_none_or(|(least, _)| duration < *least) {
             best = Some((duration, profile));
         }
-        // The first solution is linearised about one without jerk limits; the second, about the first, is faster.
-        if slowdown < GOOD_ENOUGH && (round > 0 || !jerk_limited) {
+        if good_enough {
             break;
         }
     }
-    let (_, profile) = best.ok_or_else(|| ManipulatorError::Timing { reason: "no round was solved".into() })?;
-    Ok((profile, second_order_duration))
+    let (duration, profile) = best.ok_or_else(|| ManipulatorError::Timing { reason: "no round was solved".into() })?;
+    Ok((duration, profile, second_order_duration))
 }
 
 /// Gridpoints that share the path and its second-order time evenly, half and half.
@@ -200,7 +206,8 @@ fn grid(path: &JointPath, bounds: &Bounds<'_>, options: &TimingOptions, density:
 }
 
 /// Lowers the limits at the gridpoints around every place where the trajectory breaks them.
-fn tighten(grid: &mut Grid, bounds: &Bounds<'_>, trajectory: &JointTrajectory, profile: &Smoothed) {
+fn tighten(grid: &mut Grid, bounds: &Bounds<'_>, trajectory: &JointTrajectory, profile: &Smoothed, too_strong: bool) {
+    let sampled_counts = too_strong || grid.tool.is_some();
     let dof = bounds.limits.lower.len();
     let n = grid.parameters.len();
     // Of each gridpoint and joint: velocity, acceleration, jerk, torque; of each gridpoint: the tool's speed and acceleration.
@@ -210,17 +217,18 @@ fn tighten(grid: &mut Grid, bounds: &Bounds<'_>, trajectory: &JointTrajectory, p
         let [from, to] = [interval, interval + 1].map(|k| profile.at(trajectory.points[k].time_s)[0]);
         let low = grid.parameters.partition_point(|&s| s <= from).clamp(1, n - 1) - 1;
         let high = grid.parameters.partition_point(|&s| s < to).clamp(1, n - 1);
-        let (torques, sampled) = bounds.sampled_between(trajectory, interval);
+        let sampled = sampled_counts.then(|| bounds.sampled_between(trajectory, interval));
         for (joint, quintic) in trajectory.quintics(interval).enumerate() {
             let mut ratios = [1.0; 3];
             let mut ignored_margin = f64::NEG_INFINITY;
             bounds.raise(joint, &quintic, &mut ratios, &mut ignored_margin);
-            let peaks = [ratios[0], ratios[1], ratios[2], torques[joint]];
+            let peaks = [ratios[0], ratios[1], ratios[2], sampled.as_ref().map_or(1.0, |(torques, _)| torques[joint])];
             for station in low..=high {
                 let entry = &mut worst[station * dof + joint];
                 entry.iter_mut().zip(peaks).for_each(|(w, ratio)| *w = w.max(ratio));
             }
         }
+        let Some((_, sampled)) = sampled else { continue };
         for entry in &mut of_tool[low..=high] {
             let peaks = [sampled.tool_speed, sampled.tool_acceleration];
             entry.iter_mut().zip(peaks).for_each(|(w, ratio)| *w = w.max(ratio.unwrap_or(1.0)));
@@ -244,29 +252,38 @@ fn tighten(grid: &mut Grid, bounds: &Bounds<'_>, trajectory: &JointTrajectory, p
     }
 }
 
-/// Samples ever slower until the audit passes.
+/// How long a trajectory takes when it is slowed down by that much: a thousandth more, so that a few rounds suffice and no
+/// reader's rounding breaks a limit.
+fn slowed(trajectory: &JointTrajectory, slowdown: f64) -> f64 {
+    trajectory.duration_s() * if slowdown > 1.0 { (slowdown * 1.001).max(1.0005) } else { 1.0 }
+}
+
+/// Samples ever slower, at first over `duration`, until the audit passes, and that audit.
 fn slowed_until_legal(
     path: &JointPath,
     profile: &Smoothed,
+    mut duration: f64,
     bounds: &Bounds<'_>,
     sampling: &Sampling<'_>,
-) -> Result<JointTrajectory> {
+) -> Result<(JointTrajectory, Audit)> {
     const ATTEMPTS: usize = 12;
-    let mut duration = profile.duration();
+    // What no slowdown makes legal is to be refused for the reason that its own speed shows.
+    if !duration.is_finite() {
+        duration = profile.duration();
+    }
     let mut attempt = 0;
     loop {
         let trajectory = sample(path, profile, duration, sampling)?;
         let Found { audit, slowdown } = against(bounds, &trajectory);
         if audit.limits_ok {
-            return Ok(trajectory);
+            return Ok((trajectory, audit));
         }
         attempt += 1;
         // Where no slowdown helps, a position limit is broken, or holding the arm alone takes too much torque.
         if attempt == ATTEMPTS || slowdown <= 1.0 || slowdown.is_infinite() {
             return Err(not_met(&audit));
         }
-        // A thousandth of margin, so that a few rounds suffice and no reader's rounding breaks a limit.
-        duration = trajectory.duration_s() * (slowdown * 1.001).max(1.0005);
+        duration = slowed(&trajectory, slowdown);
         if !duration.is_finite() {
             return Err(ManipulatorError::NonFinite { what: "the timed path" });
         }

@@ -6,6 +6,7 @@
 
 mod figure;
 mod geometry;
+mod manipulator;
 mod ordering;
 mod peers;
 mod programs;
@@ -19,7 +20,8 @@ use figure::Figure;
 type Measure = fn(&Layout) -> Outcome<Vec<Figure>>;
 
 /// What can be measured. A new area is a file and a line here.
-const AREAS: [(&str, Measure); 2] = [("geometry", geometry::measure), ("ordering", ordering::measure)];
+const AREAS: [(&str, Measure); 3] =
+    [("geometry", geometry::measure), ("manipulator", manipulator::measure), ("ordering", ordering::measure)];
 
 /// Measures an area, writes `target/bench/AREA.json` and prints it as a table. A bound that is missed is a figure, not a failure.
 pub(crate) fn run(layout: &Layout, area: &str) -> Outcome {
@@ -45,7 +47,7 @@ mod tests {
     fn an_unknown_area_is_refused_in_one_sentence_that_names_the_known_ones() {
         let folder = tempfile::tempdir().unwrap();
         let failure = run(&Layout::at(folder.path()), "astrology").unwrap_err().to_string();
-        assert_eq!(failure, "there is no benchmark of astrology: choose one of geometry, ordering");
+        assert_eq!(failure, "there is no benchmark of astrology: choose one of geometry, manipulator, ordering");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing was made for it");
     }
 }
