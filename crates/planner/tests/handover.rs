@@ -2,40 +2,27 @@
 //! executes in the end is one legal trajectory. `cargo xtask soak handovers 200` runs two hundred on each arm, the tests a few.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod support;
+
 use std::collections::BTreeMap;
 
 use planner::manipulator::nalgebra::Vector3;
 use planner::manipulator::{JointTrajectory, Robot, audit};
 use planner::se3_geom::{LieGroup, Pose, So3Group, xyzw_from_rotation};
 use planner::{Config, Input, Job, Motion, Outcome, Output, RawPose, Refusal, Session};
+use support::random::Random;
 
 const SAMPLE: usize = 8;
 /// The hand-overs are judged in runs, each from rest, so that no single trajectory grows without end.
 const HANDOVERS_A_RUN: usize = 8;
 const LEAD_S: f64 = 0.5;
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-}
-
 /// A shuffled curve of three harmonics in front of the arm; one in eight is out of its reach, one in sixteen holds no pose.
 fn poses(home: &Pose, random: &mut Random) -> Vec<RawPose> {
     let count = random.between(40.0, 90.0) as usize;
-    let closed = random.unit() < 0.5;
+    let closed = random.between(0.0, 1.0) < 0.5;
     let harmonics: Vec<[f64; 6]> = (0..3).map(|_| std::array::from_fn(|_| random.between(-1.0, 1.0))).collect();
-    let kind = random.unit();
+    let kind = random.between(0.0, 1.0);
     let away = if kind < 0.125 { 3.0 } else { 0.0 };
     let turn = if closed { std::f64::consts::TAU } else { 4.0 };
     let mut raw: Vec<RawPose> = (0..count)
@@ -59,7 +46,7 @@ fn poses(home: &Pose, random: &mut Random) -> Vec<RawPose> {
         raw[count / 2].quaternion_xyzw = [0.0; 4];
     }
     for i in (1..count).rev() {
-        raw.swap(i, (random.unit() * (i + 1) as f64) as usize);
+        raw.swap(i, (random.between(0.0, 1.0) * (i + 1) as f64) as usize);
     }
     raw
 }
@@ -163,7 +150,7 @@ fn assert_passes_poses(arm: &Arm, outcome: &Outcome, motion: &Motion) {
 
 fn assert_taken_over_or_stopped(name: &str) {
     let wanted = std::env::var("REORDER_SOAK_CASES").ok().map_or(SAMPLE, |n| n.parse().unwrap());
-    let mut random = Random(2026);
+    let mut random = Random::new(2026);
     let mut arm = Arm::new(name);
     let home = arm.session.robot().chain.forward(&arm.session.robot().preferred);
     let mut tally = BTreeMap::<String, usize>::new();
@@ -182,7 +169,7 @@ fn assert_taken_over_or_stopped(name: &str) {
                 Err(outcome) => break outcome,
             };
             // One plan in ten takes longer than the lead.
-            now_s += LEAD_S * if random.unit() < 0.1 { 1.3 } else { random.between(0.05, 0.85) };
+            now_s += LEAD_S * if random.between(0.0, 1.0) < 0.1 { 1.3 } else { random.between(0.05, 0.85) };
             let outcome = job.run();
             arm.measure(now_s, &mut random);
             asked = only_job(arm.session.handle(now_s, Input::Finished(outcome)));
@@ -213,7 +200,7 @@ fn assert_taken_over_or_stopped(name: &str) {
         let left = arm.ends_s() - now_s;
         if left > 0.0 {
             // Now and then the arm comes to rest, and all that it did is judged.
-            now_s += if in_run >= HANDOVERS_A_RUN { left + 1.0 } else { random.unit().powi(2) * left };
+            now_s += if in_run >= HANDOVERS_A_RUN { left + 1.0 } else { random.between(0.0, 1.0).powi(2) * left };
         }
         if now_s > arm.ends_s() {
             now_s += 1.0;

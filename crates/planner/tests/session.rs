@@ -1,10 +1,13 @@
 //! Transcripts of the session: what goes in, what comes out, in which order. No clock, no thread.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod support;
+
 use planner::manipulator::Robot;
 use planner::manipulator::nalgebra::DVector;
 use planner::se3_geom::xyzw_from_rotation;
-use planner::{Config, Input, Job, Outcome, Output, RawPose, Refusal, Report, Session};
+use planner::{Config, Input, Output, RawPose, Refusal, Report, Session};
+use support::outputs::{only_job, only_outcome};
 
 const NOW_S: f64 = 10.0;
 const HOME: [f64; 6] = [-1.57, -1.57, 1.57, -1.57, -1.57, 0.0];
@@ -58,16 +61,6 @@ fn kinds(outputs: &[Output]) -> Vec<String> {
         Output::Warn(_) => "warn".to_owned(),
     };
     outputs.iter().map(kind).collect()
-}
-
-fn only_job(outputs: Vec<Output>) -> Job {
-    let [Output::Run(job)] = <[Output; 1]>::try_from(outputs).unwrap() else { panic!("no job") };
-    job
-}
-
-fn only_outcome(outputs: Vec<Output>) -> Box<Outcome> {
-    let [Output::Publish(outcome)] = <[Output; 1]>::try_from(outputs).unwrap() else { panic!("nothing published") };
-    outcome
 }
 
 #[test]

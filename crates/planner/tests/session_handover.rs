@@ -1,11 +1,14 @@
 //! Transcripts of a session whose robot is under way when something new is asked for.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod support;
+
 use planner::manipulator::Robot;
 use planner::manipulator::nalgebra::DVector;
 use planner::manipulator::{TimingOptions, audit_from};
 use planner::se3_geom::xyzw_from_rotation;
-use planner::{Config, Input, Job, Motion, OnRefusal, Outcome, Output, RawPose, Refusal, Session};
+use planner::{Config, Input, Motion, OnRefusal, RawPose, Refusal, Session};
+use support::outputs::{only_job, only_outcome};
 
 const HOME: [f64; 6] = [-1.57, -1.57, 1.57, -1.57, -1.57, 0.0];
 /// When the robot set out.
@@ -28,16 +31,6 @@ fn line(height_m: f64) -> Input {
 fn no_pose() -> Input {
     let pose = RawPose { position: [0.0; 3], quaternion_xyzw: [0.0; 4] };
     Input::Poses { frame_id: String::new(), stamp_ns: 0, poses: vec![pose] }
-}
-
-fn only_job(outputs: Vec<Output>) -> Job {
-    let [Output::Run(job)] = <[Output; 1]>::try_from(outputs).unwrap() else { panic!("no job") };
-    job
-}
-
-fn only_outcome(outputs: Vec<Output>) -> Box<Outcome> {
-    let [Output::Publish(outcome)] = <[Output; 1]>::try_from(outputs).unwrap() else { panic!("nothing published") };
-    outcome
 }
 
 fn measured(session: &Session, positions: &DVector<f64>, velocities: &DVector<f64>) -> Input {

@@ -6,33 +6,11 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use reorder::{Options, Ordering, Repair, Topology, TopologyChoice, Verdict, order, order_poses};
+use reorder::{Options, Repair, Topology, Verdict, order, order_poses};
 use se3_geom::nalgebra::{UnitQuaternion, Vector2, Vector3};
 use se3_geom::{Pose, R2, R3, So3};
+use support::plane::{doubted, in_plane, line, reasons, tree_in_plane};
 use support::{Random, neighbours, shuffled, unshuffled};
-
-fn in_plane(points: &[(f64, f64)]) -> Ordering {
-    let points: Vec<_> = points.iter().map(|&(x, y)| Vector2::new(x, y)).collect();
-    order(&R2::default(), &points, &Options::default()).unwrap()
-}
-
-/// What speaks against the tree's order by itself.
-fn tree_in_plane(points: &[(f64, f64)]) -> Ordering {
-    let points: Vec<_> = points.iter().map(|&(x, y)| Vector2::new(x, y)).collect();
-    order(&R2::default(), &points, &Options { repair: Repair::Off, ..Options::default() }).unwrap()
-}
-
-fn line(xs: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
-    xs.into_iter().map(|x| (x, 0.0)).collect()
-}
-
-fn reasons(found: &Ordering) -> String {
-    found.doubts.iter().map(|d| format!("{:?} {}\n", d.at, d.why)).collect()
-}
-
-fn doubted(found: &Ordering, at: [usize; 2], why: &str) -> bool {
-    found.verdict == Verdict::Ambiguous && found.doubts.iter().any(|d| d.at == at && d.why.contains(why))
-}
 
 #[test]
 fn verdicts_rank() {
@@ -51,20 +29,6 @@ fn a_gap_more_than_eight_times_shorter_than_its_surroundings_is_doubted() {
     let with_gap = |gap: f64| in_plane(&line((0..20).map(|k| f64::from(k) + if k > 9 { gap - 1.0 } else { 0.0 })));
     assert_ne!(with_gap(0.13).verdict, Verdict::Ambiguous, "{}", reasons(&with_gap(0.13)));
     assert!(doubted(&with_gap(0.12), [9, 10], "the curve may come back"));
-}
-
-/// A pen that draws back over its own line with other steps: every tree edge leads to the next point on the line, and yet the
-/// order is wrong. Steps in the golden ratio fall at all fractions of the first steps, however the second pass starts.
-#[test]
-fn a_stroke_drawn_back_over_itself_is_not_plausible() {
-    let mut random = Random::seeded(21);
-    let step = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..50 {
-        let offset = random.signed();
-        let back = (0..30).map(|k| 37.0 + offset - step * f64::from(k));
-        let found = in_plane(&line((0..40).map(f64::from).chain(back)));
-        assert_eq!(found.verdict, Verdict::Ambiguous, "offset {offset}");
-    }
 }
 
 #[test]
@@ -104,23 +68,6 @@ fn strands_nearer_than_the_gaps_allow_are_doubted() {
     // Across, the nearest sample is shifted by 0.4: ε = w/(w² + 0.16), 0.44 for the wide one and 0.80 for the narrow one.
     assert_ne!(hairpin(2.2).verdict, Verdict::Ambiguous, "{}", reasons(&hairpin(2.2)));
     assert!(reasons(&hairpin(1.1)).contains("epsilon is 0.80"), "{}", reasons(&hairpin(1.1)));
-}
-
-#[test]
-fn ends_that_come_near_leave_the_topology_in_doubt() {
-    let ring = |missing: f64| {
-        let step = (TAU - missing * 0.1) / 56.0;
-        in_plane(&(0..57).map(|k| (step * f64::from(k)).sin_cos()).collect::<Vec<_>>())
-    };
-    assert_eq!((ring(1.0).topology, ring(1.0).verdict > Verdict::Ambiguous), (Topology::Closed, true));
-    assert_eq!(ring(2.5).topology, Topology::Open);
-    assert!(doubted(&ring(2.5), [0, 56], "may be closed"), "{}", reasons(&ring(2.5)));
-    assert_eq!(
-        (ring(4.0).topology, ring(4.0).verdict > Verdict::Ambiguous),
-        (Topology::Open, true),
-        "{}",
-        reasons(&ring(4.0))
-    );
 }
 
 #[test]
@@ -232,80 +179,6 @@ fn no_wrong_order_of_uneven_clean_samples_is_believed() {
     assert!(believed > 10, "only {believed} believed");
 }
 
-/// A line drawn back over itself with the points of the way back between those of the way there: an interleaved order is the
-/// shortest tree, no branch shows, and it is wholly wrong. Only the alternating gaps give it away.
-#[test]
-fn a_stroke_drawn_back_between_its_own_points_is_doubted() {
-    for shift in [0.3, 0.4, 0.42, 0.58, 0.7] {
-        for aside in [0.0, 0.05] {
-            let there = (0..15).map(|k| (f64::from(k), 0.0));
-            let back = (0..15).rev().map(|k| (f64::from(k) + shift, aside));
-            let found = in_plane(&there.chain(back).collect::<Vec<_>>());
-            assert_eq!(found.verdict, Verdict::Ambiguous, "shift {shift}");
-            assert!(reasons(&found).contains("run back beside itself"), "{}", reasons(&found));
-        }
-    }
-    // Jitter of a tenth of a step makes gaps uneven too, but in no such pattern.
-    let jittered = line((0..60).map(|k| f64::from(k) + 0.1 * (f64::from(k * k) * 1.7).sin()));
-    assert_ne!(in_plane(&jittered).verdict, Verdict::Ambiguous);
-}
-
-/// An arc drawn back a little beside itself, with the points of the way back in the gaps of the way there: the order from one to the other
-/// is shorter, no gap alternates, and the bend of the arc hides the turns back.
-#[test]
-fn a_stroke_drawn_back_beside_itself_is_doubted() {
-    const RADIUS: f64 = 20.0;
-    let at = |way: f64, aside: f64| {
-        let (sine, cosine) = (way / RADIUS).sin_cos();
-        ((RADIUS + aside) * cosine, (RADIUS + aside) * sine)
-    };
-    let jitter = |k: u32| 0.2 * (f64::from(k * k) * 1.7).sin();
-    for aside in [1e-3, 0.02, 0.05, 0.1] {
-        for uneven in [0.0, 1.0] {
-            let there = (0..15).map(|k| at(f64::from(2 * k) + uneven * jitter(k), 0.0));
-            let back = (0..15).rev().map(|k| at(f64::from(2 * k + 1) + uneven * jitter(k + 15), aside));
-            let found = in_plane(&there.chain(back).collect::<Vec<_>>());
-            assert_eq!(found.verdict, Verdict::Ambiguous, "{aside} {uneven}");
-        }
-    }
-    // The same arc once, with the same jitter, and with noise that cannot have swapped two points.
-    let once = |noise: f64| {
-        let points = (0..30).map(|k| at(f64::from(k) + jitter(k), noise * (f64::from(k) * 2.3).sin()));
-        in_plane(&points.collect::<Vec<_>>())
-    };
-    assert_eq!(once(0.0).verdict, Verdict::Certified, "{}", reasons(&once(0.0)));
-    assert_ne!(once(0.05).verdict, Verdict::Ambiguous, "{}", reasons(&once(0.05)));
-}
-
-/// An even arc is open as long as its ends are visibly farther apart than its points, and closed when they are not.
-#[test]
-fn an_even_arc_with_a_small_opening_is_not_called_closed() {
-    for n in [12, 30, 100] {
-        let circle = |opening: f64| -> Vec<(f64, f64)> {
-            let step = std::f64::consts::TAU / (f64::from(n) - 1.0 + opening);
-            (0..n).map(|k| (step * f64::from(k)).sin_cos()).collect()
-        };
-        for opening in [1.2, 1.4, 1.49] {
-            let found = in_plane(&circle(opening));
-            assert!(found.topology == Topology::Open && found.verdict == Verdict::Ambiguous, "{n} {opening}");
-        }
-        let closed = in_plane(&circle(1.05));
-        assert_eq!(
-            (closed.topology, closed.verdict > Verdict::Ambiguous),
-            (Topology::Closed, true),
-            "{n}: {}",
-            reasons(&closed)
-        );
-        let open = in_plane(&circle(6.0));
-        assert_eq!(
-            (open.topology, open.verdict > Verdict::Ambiguous),
-            (Topology::Open, true),
-            "{n}: {}",
-            reasons(&open)
-        );
-    }
-}
-
 #[test]
 fn a_handful_of_points_is_no_evidence() {
     for n in 3..10 {
@@ -351,38 +224,6 @@ fn a_tremor_far_below_the_gap_is_no_noise() {
     assert!(tremor.certificate.zigzag > 5 && noise.certificate.zigzag > 5, "{:?}", tremor.certificate);
     assert_eq!(tremor.verdict, Verdict::Plausible, "{:?} {}", tremor.certificate, reasons(&tremor));
     assert_eq!(noise.verdict, Verdict::Ambiguous, "{:?}", noise.certificate);
-}
-
-/// Independent samples of a circle, one stretch of which is left out: the loop's longest gap exceeds the next by more than 3.5 mean gaps once
-/// in 33 times only.
-#[test]
-fn a_loop_with_one_gap_that_stands_out_may_be_open() {
-    let ring = |excess: f64, topology| {
-        let mut random = Random::seeded(25);
-        let mut gaps: Vec<f64> = (0..200).map(|_| -(0.5 - 0.5 * random.signed()).max(1e-9).ln()).collect();
-        let mean = gaps.iter().sum::<f64>() / 200.0;
-        gaps.push(gaps.iter().copied().fold(0.0, f64::max) + excess * mean);
-        let around: f64 = gaps.iter().sum();
-        let mut along = 0.0;
-        let points: Vec<_> = gaps
-            .iter()
-            .map(|gap| {
-                along += gap;
-                let (s, c) = (TAU * along / around).sin_cos();
-                Vector2::new(s, c)
-            })
-            .collect();
-        order(&R2::default(), &points, &Options { topology, ..Options::default() }).unwrap()
-    };
-    let usual = ring(1.5, TopologyChoice::Auto);
-    assert_eq!((usual.topology, usual.verdict), (Topology::Closed, Verdict::Certified), "{}", reasons(&usual));
-    let wide = ring(4.5, TopologyChoice::Auto);
-    assert!(doubted(&wide, [199, 200], "may be open here"), "{:?} {}", wide.topology, reasons(&wide));
-    let asked = ring(4.5, TopologyChoice::Closed);
-    assert_eq!((asked.topology, asked.verdict), (Topology::Closed, Verdict::Plausible), "{}", reasons(&asked));
-    // Row 0 comes first, and the gap is elsewhere.
-    let ratio = wide.certificate.opening.unwrap();
-    assert!(ratio > 1.5 && ratio < 2.0, "{ratio}");
 }
 
 /// Even samples of a circle with noise of some share of their gap, denoised: that takes away what is across the curve, and leaves neighbours
