@@ -18,6 +18,8 @@ pub(crate) enum Soak {
     Shuffled,
     /// Random smooth curves, sampled, shuffled and ordered: success by density, wrong orders by verdict
     Orders,
+    /// Dense samples of random curves until so many orders are certified: every one must be right
+    Certified,
     /// Random coordinates, ordered: the number is how many seconds
     FuzzOrders,
     /// Random bytes, read as a table: the number is how many seconds
@@ -30,6 +32,7 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
         Soak::Handovers => run_test(layout, "planner", "handover", amount),
         Soak::Shuffled => run_test(layout, "planner", "shuffled_plans", amount),
         Soak::Orders => run_test(layout, "reorder", "random_orders", amount),
+        Soak::Certified => run_test(layout, "reorder", "certified_orders", amount),
         Soak::FuzzOrders => fuzz(layout, "orders", amount),
         Soak::FuzzTables => fuzz(layout, "tables", amount),
     }
