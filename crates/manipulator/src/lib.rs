@@ -83,5 +83,5 @@ pub use reach::{OutOfReach, PoseMiss};
 pub use rest_to_rest::rest_to_rest;
 pub use robot::{Limits, Robot};
 pub use slowing::slow_to_stop;
-pub use timing::{TimedPath, time_path};
+pub use timing::{TimedPath, least_duration_s, time_path};
 pub use trajectory::{JointPoint, JointTrajectory};

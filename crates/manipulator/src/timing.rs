@@ -27,6 +27,9 @@ pub struct TimedPath {
     /// The least duration under limits of velocity and acceleration, of joints and tool, alone (TOPP2-RA), in s: with jerk limits it
     /// takes longer.
     pub second_order_duration_s: f64,
+    /// Duration of the first solution, before its limits were tightened where the audit found them broken, in s. What is executed may
+    /// even be shorter: with jerk limits a later round is linearised about a better solution.
+    pub first_solution_duration_s: f64,
 }
 
 /// Published steps over which the profile is averaged: with two, a jump of the jerk becomes a ramp that quintics follow; a jump of the
@@ -64,9 +67,9 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
     let simple = || {
         let profile = single_quintic(path, travel, &bounds.limits, 1.0 / options.rate_hz);
         let duration = profile.duration();
-        (duration, profile, duration)
+        Optimised { duration, profile, legal: None, second_order_duration: duration, first_duration: duration }
     };
-    let (duration, profile, second_order_duration_s) = if travel < TINY {
+    let Optimised { duration, profile, legal, second_order_duration, first_duration } = if travel < TINY {
         simple()
     } else {
         match optimised(path, &bounds, options, &sampling) {
@@ -75,7 +78,10 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
             other => other?,
         }
     };
-    let (trajectory, audit) = slowed_until_legal(path, &profile, duration, &bounds, &sampling)?;
+    let (trajectory, audit) = match legal {
+        Some(legal) => legal,
+        None => slowed_until_legal(path, &profile, duration, &bounds, &sampling)?,
+    };
     if let Some(wanted) = options.constant_tool_speed_m_s {
         constant_speed::check(&bounds, path, &profile, &trajectory, wanted)?;
     }
@@ -85,7 +91,36 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
         true => audit,
         false => audit_under(robot, &trajectory, options.audit_rules(), None),
     };
-    Ok(TimedPath { trajectory, knot_times_s, audit, second_order_duration_s })
+    Ok(TimedPath {
+        trajectory,
+        knot_times_s,
+        audit,
+        second_order_duration_s: second_order_duration,
+        first_solution_duration_s: first_duration,
+    })
+}
+
+/// The least duration along `path`, from rest to rest, under limits of velocity and acceleration, of joints and tool, alone, in s:
+/// one solution by TOPP2-RA on that many even intervals of the path's parameter, at least two.
+///
+/// It bounds what [`time_path`] can reach, as closely as the gridpoints resolve the path, and takes a few milliseconds.
+///
+/// # Errors
+/// [`ManipulatorError::Timing`], [`ManipulatorError::InvalidOption`], [`ManipulatorError::NonFinite`].
+pub fn least_duration_s(robot: &Robot, path: &JointPath, options: &TimingOptions, intervals: usize) -> Result<f64> {
+    let bounds = options.bounds(robot)?;
+    let (_, times) = even_grid(path, &bounds, options, intervals.max(2))?.second_order(None)?;
+    times.last().copied().ok_or(ManipulatorError::NonFinite { what: "the joint path" })
+}
+
+fn even_grid(path: &JointPath, bounds: &Bounds<'_>, options: &TimingOptions, intervals: usize) -> Result<Grid> {
+    let (first, last) = path.domain();
+    let even = (0..=intervals).map(|k| first + (last - first) * k as f64 / intervals as f64).collect();
+    Grid::new(path, even, 1.0 / (last - first), bounds, greatest_tool_speed(options))
+}
+
+fn greatest_tool_speed(options: &TimingOptions) -> Option<f64> {
+    options.constant_tool_speed_m_s.or(options.tool_speed_m_s)
 }
 
 /// Places between two knots at which travel is measured.
@@ -125,19 +160,32 @@ fn single_quintic(path: &JointPath, travel: f64, limits: &Limits, shortest: f64)
     Smoothed::new(profile, 0.0)
 }
 
-/// The best of several rounds of solving and tightening: how long it takes once it is slowed down by what the audit found, the
-/// profile, and the duration of the second-order solution.
+type Audited = (JointTrajectory, Audit);
+
+struct Optimised {
+    /// How long the profile takes once it is slowed down by what the audit found.
+    duration: f64,
+    profile: Smoothed,
+    /// The trajectory and its audit, where it needs no slowdown.
+    legal: Option<Audited>,
+    second_order_duration: f64,
+    /// Of the first solution, before any tightening and slowdown.
+    first_duration: f64,
+}
+
+/// The best of several rounds of solving and tightening.
 fn optimised(
     path: &JointPath,
     bounds: &Bounds<'_>,
     options: &TimingOptions,
     sampling: &Sampling<'_>,
-) -> Result<(f64, Smoothed, f64)> {
+) -> Result<Optimised> {
     let (mut gridpoints, second_order_duration) = grid(path, bounds, options, 1)?;
     let jerk_limited = options.limits == JointLimits::Jerk;
     let window = WINDOW_STEPS[usize::from(!jerk_limited)] / sampling.rate_hz;
     let mut seed: Option<Vec<f64>> = None;
-    let mut best: Option<(f64, Smoothed)> = None;
+    let mut best: Option<(f64, Smoothed, Option<Audited>)> = None;
+    let mut first_duration = None;
     for round in 0..=TIGHTENINGS {
         let solved = match jerk_limited {
             true => gridpoints.third_order(seed.as_deref()),
@@ -149,6 +197,7 @@ fn optimised(
             Err(_) if best.is_some() => break,
             Err(error) => return Err(error),
         };
+        first_duration.get_or_insert(profile.duration());
         let trajectory = sample(path, &profile, profile.duration(), sampling)?;
         let Found { audit, slowdown } = against(bounds, &trajectory);
         // The first solution is linearised about one without jerk limits; the second, about the first, is faster.
@@ -167,24 +216,26 @@ fn optimised(
             gridpoints.limit_torque(bounds)?;
         }
         let duration = slowed(&trajectory, slowdown);
-        if best.as_ref().is_none_or(|(least, _)| duration < *least) {
-            best = Some((duration, profile));
+        if best.as_ref().is_none_or(|(least, ..)| duration < *least) {
+            best = Some((duration, profile, audit.limits_ok.then_some((trajectory, audit))));
         }
         if good_enough {
             break;
         }
     }
-    let (duration, profile) = best.ok_or_else(|| ManipulatorError::Timing { reason: "no round was solved".into() })?;
-    Ok((duration, profile, second_order_duration))
+    let (duration, profile, legal) =
+        best.ok_or_else(|| ManipulatorError::Timing { reason: "no round was solved".into() })?;
+    let first_duration = first_duration.unwrap_or(duration);
+    Ok(Optimised { duration, profile, legal, second_order_duration, first_duration })
 }
 
 /// Gridpoints that share the path and its second-order time evenly, half and half.
 fn grid(path: &JointPath, bounds: &Bounds<'_>, options: &TimingOptions, density: usize) -> Result<(Grid, f64)> {
     let (first, last) = path.domain();
-    let tool_speed = options.constant_tool_speed_m_s.or(options.tool_speed_m_s);
     let coarse = COARSE_POINTS.max(4 * path.knots().len());
-    let even: Vec<f64> = (0..=coarse).map(|k| first + (last - first) * k as f64 / coarse as f64).collect();
-    let (_, times) = Grid::new(path, even.clone(), 1.0 / (last - first), bounds, tool_speed)?.second_order(None)?;
+    let even_grid = even_grid(path, bounds, options, coarse)?;
+    let (_, times) = even_grid.second_order(None)?;
+    let even = even_grid.parameters;
     let duration = times[coarse];
     let share = |k: usize| 0.5 * (k as f64 / coarse as f64 + times[k] / duration);
     let points = match options.limits {
@@ -202,7 +253,7 @@ fn grid(path: &JointPath, bounds: &Bounds<'_>, options: &TimingOptions, density:
         parameters.push(even[k] + fraction * (even[k + 1] - even[k]));
     }
     parameters[points] = last;
-    Ok((Grid::new(path, parameters, duration / (last - first), bounds, tool_speed)?, duration))
+    Ok((Grid::new(path, parameters, duration / (last - first), bounds, greatest_tool_speed(options))?, duration))
 }
 
 /// Lowers the limits at the gridpoints around every place where the trajectory breaks them.

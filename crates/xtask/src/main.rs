@@ -30,7 +30,7 @@ enum Chore {
         #[arg(default_value_t = 1000)]
         amount: u32,
     },
-    /// Measure an area (geometry, ordering) beside the libraries that others would use, and print the table
+    /// Measure an area (geometry, ordering, manipulator) beside the libraries that others would use, and print the table
     Bench { area: String },
     /// Set up, then run clippy and rustdoc over the workspace with warnings as errors
     Lint,
