@@ -153,3 +153,17 @@ fn a_chain_without_joints_and_frames_that_do_not_exist_are_refused_by_name() {
         &["no chain"],
     );
 }
+
+/// Both numbers rounded to 1.5708 would say nothing.
+#[test]
+fn a_joint_hardly_beyond_its_limits_is_told_by_how_much() {
+    let mut robot = ur5e();
+    robot.limits.upper[2] = std::f64::consts::FRAC_PI_2;
+    for (by, words) in [(3.2e-6, "3.2e-6"), (0.25, "0.2500")] {
+        let mut q = robot.preferred.clone();
+        q[2] = robot.limits.upper[2] + by;
+        let message = robot.check_within_limits("the start", &q).unwrap_err().to_string();
+        let sentence = format!("the start: elbow_joint is {words} rad (or m) beyond its upper limit of 1.5708");
+        assert_eq!(message, sentence);
+    }
+}
