@@ -1,52 +1,18 @@
 //! Torques: ours against MuJoCo's inverse dynamics.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/oracle.rs"]
+mod oracle;
+
 use std::fs;
-use std::sync::Arc;
 
 use mujoco_rs::prelude::*;
+use mujoco_sim::planner::manipulator::Robot;
 use mujoco_sim::planner::manipulator::nalgebra::{DVector, UnitQuaternion, Vector3};
-use mujoco_sim::planner::manipulator::{Dynamics, Robot};
 use mujoco_sim::planner::se3_geom::Pose;
 use mujoco_sim::planner::{Config, Request, plan};
 use mujoco_sim::{ExecuteOptions, SimulatedArm, TOOL_SITE, model_file, read_dynamics};
-
-/// MuJoCo's inverse dynamics of some joints of a model, without contacts and joint limits.
-struct Oracle {
-    data: MjData<Arc<MjModel>>,
-    places: Vec<(usize, usize)>,
-}
-
-impl Oracle {
-    fn new(mut model: MjModel, joints: &[String]) -> Self {
-        model.opt_mut().disableflags |= MjtDisableBit::mjDSBL_CONSTRAINT as i32 | MjtDisableBit::mjDSBL_CONTACT as i32;
-        let place = |name: &String| {
-            let joint = (0..model.jnt_type().len())
-                .find(|&joint| model.id_to_name(MjtObjBase::mjOBJ_JOINT, joint) == Some(name.as_str()))
-                .unwrap_or_else(|| panic!("MuJoCo has no joint {name}"));
-            (model.jnt_qposadr()[joint] as usize, model.jnt_dofadr()[joint] as usize)
-        };
-        let places = joints.iter().map(place).collect();
-        Self { data: MjData::try_new(Arc::new(model)).unwrap(), places }
-    }
-
-    fn torque(&mut self, [q, rates, accelerations]: [&DVector<f64>; 3]) -> DVector<f64> {
-        for (joint, &(position, velocity)) in self.places.iter().enumerate() {
-            self.data.qpos_mut()[position] = q[joint];
-            self.data.qvel_mut()[velocity] = rates[joint];
-            self.data.qacc_mut()[velocity] = accelerations[joint];
-        }
-        self.data.inverse();
-        let torques = self.data.qfrc_inverse();
-        DVector::from_iterator(self.places.len(), self.places.iter().map(|&(_, velocity)| torques[velocity]))
-    }
-}
-
-fn ours(dynamics: &Dynamics, [q, rates, accelerations]: [&DVector<f64>; 3]) -> DVector<f64> {
-    let mut torque = DVector::from_element(q.len(), f64::NAN);
-    dynamics.torque(q.as_slice(), rates.as_slice(), accelerations.as_slice(), torque.as_mut_slice());
-    torque
-}
+use oracle::{Oracle, ours};
 
 /// States that neither repeat nor favour a joint: two rad, 3 rad/s, 10 rad/s².
 fn states(dof: usize) -> impl Iterator<Item = [DVector<f64>; 3]> {
@@ -58,7 +24,7 @@ fn states(dof: usize) -> impl Iterator<Item = [DVector<f64>; 3]> {
 
 /// The greatest deviation as a part of the greatest torque of any joint.
 fn deviation(mut one: impl FnMut([&DVector<f64>; 3]) -> DVector<f64>, oracle: &mut Oracle) -> f64 {
-    let dof = oracle.places.len();
+    let dof = oracle.dof();
     let (mut worst, mut peak) = (0.0_f64, 0.0_f64);
     for [q, rates, accelerations] in &states(dof).collect::<Vec<_>>() {
         let state = [q, rates, accelerations];

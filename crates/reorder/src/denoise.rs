@@ -7,6 +7,8 @@ use crate::tour::Problem;
 
 /// Rounds of the power iteration; the direction only has to be good to a fraction of the noise.
 const ROUNDS: usize = 30;
+/// More would smooth bends, fewer would follow the noise.
+const NEIGHBOURS: usize = 8;
 
 /// Every point moved toward the parabola that fits its near points and itself, and how far each was moved.
 ///
@@ -30,7 +32,7 @@ pub(crate) fn denoised<M: Manifold>(
 
 /// `None` where the near points give no direction.
 fn step_to_parabola<M: Manifold>(manifold: &M, p: &M::Point, problem: &Problem<M>, v: usize) -> Option<M::Tangent> {
-    let logs: Vec<M::Tangent> = problem.near(v).iter().filter_map(|near| near.log()).collect();
+    let logs: Vec<M::Tangent> = problem.near(v).iter().take(NEIGHBOURS).filter_map(|near| near.log()).collect();
     let first = *logs.first()?;
     let zero = first * 0.0;
     let around: Vec<M::Tangent> = std::iter::once(zero).chain(logs).collect();

@@ -14,10 +14,14 @@ pub(crate) enum Soak {
     Plans,
     /// Random curves that arrive while the arm executes others: so many hand-overs on each arm
     Handovers,
+    /// The same pose sets, executed in MuJoCo: so many without a contact on each arm, and their tracking, poses and torques
+    Executions,
     /// Random curves, shuffled, planned and judged
     Shuffled,
     /// Random smooth curves, sampled, shuffled and ordered: success by density, wrong orders by verdict
     Orders,
+    /// Dense samples of random curves until so many orders are certified: every one must be right
+    Certified,
     /// Random coordinates, ordered: the number is how many seconds
     FuzzOrders,
     /// Random bytes, read as a table: the number is how many seconds
@@ -28,8 +32,10 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
     match name {
         Soak::Plans => run_test(layout, "planner", "random_plans", amount),
         Soak::Handovers => run_test(layout, "planner", "handover", amount),
+        Soak::Executions => run_test(layout, "mujoco-sim", "random_executions", amount),
         Soak::Shuffled => run_test(layout, "planner", "shuffled_plans", amount),
         Soak::Orders => run_test(layout, "reorder", "random_orders", amount),
+        Soak::Certified => run_test(layout, "reorder", "certified_orders", amount),
         Soak::FuzzOrders => fuzz(layout, "orders", amount),
         Soak::FuzzTables => fuzz(layout, "tables", amount),
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use se3_geom::Manifold;
 
 /// How many nearest points every point may be joined to by one move of the search.
-const NEIGHBOURS: usize = 8;
+const NEIGHBOURS: usize = 12;
 
 /// What an end of an open path costs, in units of its turning back there: a point goes on nowhere in any order, but an order that
 /// could leave a turn unpaid at either end would put its ends in the bends of the curve.

@@ -68,6 +68,13 @@ impl Ring {
             self.exchange(m2, s2, s1, y);
         }
     }
+    /// Puts the stretches s₁…s₂ and t₁…t₂ in each other's place, where p s₁…s₂ q…x t₁…t₂ y is a walk in either direction.
+    pub(super) fn trade(&mut self, [p, s1, s2, q, x, t1, t2, y]: [usize; 8]) {
+        self.exchange(p, s1, t2, y);
+        self.exchange(p, t2, t1, x);
+        self.exchange(t2, x, q, s2);
+        self.exchange(x, s2, s1, y);
+    }
     fn reverse(&mut self, from: usize, count: usize) {
         let n = self.nodes.len();
         let (mut i, mut j) = (from, (from + count + n - 1) % n);

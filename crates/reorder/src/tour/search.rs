@@ -1,5 +1,6 @@
 //! Local search with kicks.
 
+mod bridges;
 mod moves;
 
 use std::collections::VecDeque;
@@ -17,8 +18,8 @@ const RELATIVE_GAIN: f64 = 1e-9;
 const MOST_MOVES: usize = 100;
 /// Stretches that a kick exchanges are at most this long, so that it can be mended near by.
 const KICK: usize = 8;
-/// No fewer kicks than this, where there is anything to kick.
-const FEWEST_KICKS: usize = 100;
+/// No fewer kicks in a round than this, where there is anything to kick.
+const FEWEST_KICKS: usize = 20;
 const SEED: u64 = 0x5EED;
 
 /// A tour of least Σ distance + λ Σ turning, as far as the search finds it.
@@ -38,6 +39,8 @@ pub(super) enum Move {
     Exchange([usize; 4]),
     /// See [`Ring::swap`].
     Swap([usize; 6], bool),
+    /// See [`Ring::trade`].
+    Trade([usize; 8]),
 }
 
 impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
@@ -67,31 +70,43 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         self.ring.into_nodes()
     }
 
-    /// Improves from every node, then after so many kicks for every node whose neighbours are not the obvious ones.
-    pub(super) fn run(mut self, kicks_per_node: usize) -> Vec<usize> {
+    /// Until no move gains, nor two together.
+    pub(super) fn descend(&mut self) {
         // In a circle of four or fewer there is nothing to exchange that an exchange of two edges would not reach.
         if self.ring.len() < 4 {
-            return self.ring.into_nodes();
+            return;
         }
         for k in 0..self.ring.len() {
             self.enqueue(self.ring.node(k));
         }
         self.improve();
         self.move_opening();
+        self.bridge();
         self.ring.keep();
-        let unsettled = self.unsettled();
+    }
+
+    /// From a tour that was descended to: rounds of a kick for every node whose neighbours are not the obvious ones.
+    pub(super) fn shake(&mut self, rounds: usize) {
+        if self.ring.len() < 4 {
+            return;
+        }
         let mut random = Random::seeded(SEED);
-        if !unsettled.is_empty() && kicks_per_node > 0 {
-            for _ in 0..(kicks_per_node * unsettled.len()).max(FEWEST_KICKS) {
+        for _ in 0..rounds {
+            let unsettled = self.unsettled();
+            if unsettled.is_empty() {
+                break;
+            }
+            for _ in 0..unsettled.len().max(FEWEST_KICKS) {
                 if self.problem.was_cut_short() {
-                    break;
+                    return;
                 }
                 let v = unsettled[random.below(unsettled.len())];
                 self.kick(v, &mut random);
             }
+            self.bridge();
+            self.ring.keep();
         }
         self.move_opening();
-        self.ring.into_nodes()
     }
 
     /// Where the tour is not the obvious one: elsewhere a kick gains nothing.
@@ -108,7 +123,7 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
     pub(super) fn take_back(&mut self) {
         self.ring.take_back();
     }
-    /// Any exchange or swap of stretches, in either direction; the circle must have five nodes or more.
+    /// Any exchange, swap or trade of stretches, in either direction; the circle must have five nodes or more.
     #[cfg(test)]
     pub(super) fn random_move(&self, random: &mut Random) -> Move {
         let n = self.ring.len();
@@ -121,6 +136,11 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
             return Move::Exchange([walk[0], walk[1], walk[first], walk[first + 1]]);
         }
         let second = first + 1 + random.below(n - 2 - first);
+        if second + 2 < n && random.below(2) == 0 {
+            let third = second + 1 + random.below(n - 2 - second);
+            let cuts = [0, first, second, third];
+            return Move::Trade(std::array::from_fn(|k| walk[cuts[k / 2] + k % 2]));
+        }
         let nodes = [walk[0], walk[1], walk[first], walk[first + 1], walk[second], walk[second + 1]];
         Move::Swap(nodes, random.below(2) == 0)
     }
@@ -211,10 +231,12 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         let nodes: &[usize] = match &chosen {
             Move::Exchange(nodes) => nodes,
             Move::Swap(nodes, _) => nodes,
+            Move::Trade(nodes) => nodes,
         };
         match chosen {
             Move::Exchange([a, b, c, d]) => self.ring.exchange(a, b, c, d),
             Move::Swap(nodes, turned) => self.ring.swap(nodes, turned),
+            Move::Trade(nodes) => self.ring.trade(nodes),
         }
         for &v in nodes {
             self.turns[v] = self.turn_at(v);

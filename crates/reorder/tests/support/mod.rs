@@ -4,6 +4,7 @@
 pub(crate) mod harmonics;
 pub(crate) mod permutations;
 pub(crate) mod plane;
+pub(crate) mod trials;
 
 use se3_geom::Pose;
 use se3_geom::nalgebra::{Isometry3, UnitQuaternion, Vector3};

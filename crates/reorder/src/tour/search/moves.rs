@@ -146,6 +146,17 @@ impl<M: Manifold> Search<'_, '_, M> {
                 }
                 after.extend(&beyond);
             }
+            Move::Trade([p, s1, s2, q, x, t1, t2, y]) => {
+                let forward = self.ring.next(p) == s1;
+                let outer = [self.ring.step(p, !forward), p];
+                let beyond = [y, self.ring.step(y, forward)];
+                let [s, middle, t] = [(s1, s2), (q, x), (t1, t2)];
+                for (around, stretches) in [(&mut before, [s, middle, t]), (&mut after, [t, middle, s])] {
+                    around.extend(&outer);
+                    stretches.iter().for_each(|&(first, last)| around.stretch(&self.ring, first, last, forward));
+                    around.extend(&beyond);
+                }
+            }
         }
         [before, after]
     }
@@ -176,7 +187,7 @@ impl<M: Manifold> Search<'_, '_, M> {
 /// The nodes around a move in sequence: two before and after, and of every stretch the two at either end.
 #[derive(Default)]
 struct Around {
-    nodes: [usize; 14],
+    nodes: [usize; 19],
     count: usize,
 }
 
