@@ -84,7 +84,7 @@ pub fn audit_from(robot: &Robot, trajectory: &JointTrajectory, from: &JointPoint
 /// Judges the trajectory that a controller would execute against the robot's limits, as far as the rules say; it must begin at rest, or
 /// in the state `from` as for [`audit_from`].
 pub fn audit_under(robot: &Robot, trajectory: &JointTrajectory, rules: AuditRules, from: Option<&JointPoint>) -> Audit {
-    if trajectory.joint_names == robot.chain.joint_names() {
+    if trajectory.joint_names == robot.chain.joint_names() && robot.check_limits().is_ok() {
         return against_from(&Bounds::new(robot, robot.limits.clone(), rules), trajectory, from).audit;
     }
     // Judged joint by joint in order: under other names that would be somebody else's limits.

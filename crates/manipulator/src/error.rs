@@ -1,5 +1,6 @@
 //! Everything that can go wrong between a robot description and a legal trajectory.
 
+use crate::excess::{beyond, figure};
 use crate::reach::OutOfReach;
 
 /// Why there is no robot, no joint path or no trajectory. Pose indices count from 0 along the curve.
@@ -152,7 +153,7 @@ pub enum ManipulatorError {
     },
     /// The way to a pose leads over a joint limit on every branch tried.
     #[error(
-        "on the way to pose {pose} joint {joint:?} would have to go to {value:.4}, beyond its limits {lower:.4} to {upper:.4}"
+        "on the way to pose {pose} joint {joint:?} would have to go {}", beyond(*value, *lower, *upper)
     )]
     JointLimit {
         /// Index of the pose.
@@ -217,10 +218,18 @@ pub enum ManipulatorError {
         reason: String,
     },
     /// A joint cannot even hold the arm still.
-    #[error("joint {joint:?} needs {needed:.2} N·m to hold the arm on the path, but its limit is {effort:.2} N·m")]
+    #[error(
+        "joint {joint:?} needs {needed:.2} N·m to hold the arm still {}, {} N·m more than its limit",
+        pose.map_or_else(|| format!("at {configuration:.2?}"), |pose| format!("near pose {pose}")),
+        figure(needed - effort)
+    )]
     HoldingTorque {
         /// The joint.
         joint: String,
+        /// Index of the pose that is nearest along the path; none on a move that leads through no poses.
+        pose: Option<usize>,
+        /// Positions of the joints there, in rad or m.
+        configuration: Vec<f64>,
         /// Torque against gravity and dry friction, in N·m (N for prismatic joints).
         needed: f64,
         /// Its limit.
@@ -239,7 +248,7 @@ pub enum ManipulatorError {
         greatest_m_s: f64,
     },
     /// A configuration is beyond a position limit.
-    #[error("{what}: {joint} is at {value:.4}, beyond its limits {lower:.4} to {upper:.4} (rad or m)")]
+    #[error("{what}: {joint} is {}", beyond(*value, *lower, *upper))]
     BeyondLimits {
         /// What the configuration is.
         what: &'static str,
@@ -301,6 +310,7 @@ impl ManipulatorError {
             | Self::Jump { pose, .. }
             | Self::ConstantSpeed { pose, .. }
             | Self::PathTolerance { pose, .. } => Some(*pose),
+            Self::HoldingTorque { pose, .. } => *pose,
             _ => None,
         }
     }

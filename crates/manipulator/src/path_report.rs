@@ -86,7 +86,7 @@ impl PathReport {
     }
 }
 
-fn nearest_pose(path: &JointPath, parameter: f64) -> usize {
+pub(crate) fn nearest_pose(path: &JointPath, parameter: f64) -> usize {
     let poses = path.pose_parameters();
     let after = poses.partition_point(|&s| s < parameter).min(poses.len() - 1);
     let before = after.saturating_sub(1);

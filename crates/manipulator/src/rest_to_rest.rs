@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use crate::audit::{Audit, against};
 use crate::error::{ManipulatorError, Result};
+use crate::holding::too_weak_for;
 use crate::options::TimingOptions;
 use crate::robot::Robot;
 use crate::sampling::Sampling;
@@ -20,7 +21,8 @@ pub(crate) fn least_duration(distance: f64, velocity: f64, acceleration: f64, je
 /// quintics between its points are pieces of that quintic. Equal ends give a single point at rest.
 ///
 /// # Errors
-/// [`ManipulatorError`] for malformed configurations or options, [`ManipulatorError::BeyondLimits`] for an end beyond a limit.
+/// [`ManipulatorError`] for malformed configurations or options, [`ManipulatorError::BeyondLimits`] for an end beyond a limit,
+/// [`ManipulatorError::HoldingTorque`] where a joint cannot hold the arm somewhere on the way.
 pub fn rest_to_rest(
     robot: &Robot,
     from: &DVector<f64>,
@@ -45,7 +47,7 @@ pub fn rest_to_rest(
             return Ok(trajectory);
         }
         if !(found.slowdown > 1.0 && found.slowdown.is_finite()) {
-            return Err(not_met(&found.audit));
+            return Err(too_weak_for(&trajectory, &bounds).unwrap_or_else(|| not_met(&found.audit)));
         }
         least = trajectory.duration_s() * found.slowdown * 1.001;
     }

@@ -214,11 +214,36 @@ impl Robot {
     }
 
     pub(crate) fn check_configuration(&self, what: &'static str, q: &DVector<f64>) -> Result<()> {
+        self.check_limits()?;
         if q.len() != self.chain.dof() {
             return Err(ManipulatorError::WrongSize { what, expected: self.chain.dof(), given: q.len() });
         }
         if !q.iter().all(|x| x.is_finite()) {
             return Err(ManipulatorError::NonFinite { what });
+        }
+        Ok(())
+    }
+
+    /// Whoever set a limit by hand may have set it to anything; comparing with what is no number would pass every test.
+    pub(crate) fn check_limits(&self) -> Result<()> {
+        let Limits { lower, upper, velocity, acceleration, jerk, effort } = &self.limits;
+        let expected = self.chain.dof();
+        let wrong = [lower, upper, velocity, acceleration, jerk, effort].into_iter().find(|v| v.len() != expected);
+        if let Some(given) = wrong.map(DVector::len) {
+            return Err(ManipulatorError::WrongSize { what: "a limit", expected, given });
+        }
+        for (i, joint) in self.chain.joint_names().iter().enumerate() {
+            let range = upper[i] - lower[i];
+            let figures = [
+                ("its range (upper - lower limit)", range, range > 0.0),
+                ("its velocity limit", velocity[i], velocity[i] > 0.0 && velocity[i].is_finite()),
+                ("its acceleration limit", acceleration[i], acceleration[i] > 0.0 && acceleration[i].is_finite()),
+                ("its jerk limit", jerk[i], jerk[i] > 0.0 && jerk[i].is_finite()),
+                ("its effort limit", effort[i], effort[i] > 0.0),
+            ];
+            if let Some(&(what, value, _)) = figures.iter().find(|(.., right)| !right) {
+                return Err(ManipulatorError::InvalidJoint { joint: joint.clone(), what, value, must_be: "positive" });
+            }
         }
         Ok(())
     }

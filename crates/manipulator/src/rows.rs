@@ -57,7 +57,8 @@ impl TorqueRows {
                 let (needed, effort) = (holding[joint].abs() + rows.dry[joint], bounds.limits.effort[joint]);
                 if needed >= effort {
                     let joint = bounds.chain.joint_names()[joint].clone();
-                    return Err(ManipulatorError::HoldingTorque { joint, needed, effort });
+                    let configuration = q.as_slice().to_vec();
+                    return Err(ManipulatorError::HoldingTorque { joint, pose: None, configuration, needed, effort });
                 }
             }
         }

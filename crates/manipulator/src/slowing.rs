@@ -54,6 +54,7 @@ const LAST_STEPS: f64 = 3.0;
 const MOST_STEPS: usize = 2_000;
 
 pub(crate) fn check_running(robot: &Robot, running: &JointTrajectory, at_s: f64) -> Result<()> {
+    robot.check_limits()?;
     let dof = robot.chain.dof();
     if running.joint_names != robot.chain.joint_names() || !running.is_well_formed(dof) {
         return Err(ManipulatorError::NonFinite { what: "the running trajectory" });

@@ -6,6 +6,7 @@ use crate::audit::{Audit, Found, against, audit_under};
 use crate::bounds::Bounds;
 use crate::constant_speed;
 use crate::error::{ManipulatorError, Result};
+use crate::holding::too_weak_along;
 use crate::joint_path::JointPath;
 use crate::optimise::Grid;
 use crate::options::{JointLimits, TimingOptions};
@@ -75,6 +76,9 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
         match optimised(path, &bounds, options, &sampling) {
             // The solver gave up, about once in three hundred random paths. A slow trajectory is legal all the same.
             Err(ManipulatorError::Timing { .. }) => simple(),
+            Err(weak @ ManipulatorError::HoldingTorque { .. }) => {
+                return Err(too_weak_along(path, &bounds).unwrap_or(weak));
+            }
             other => other?,
         }
     };
@@ -332,7 +336,8 @@ fn slowed_until_legal(
         attempt += 1;
         // Where no slowdown helps, a position limit is broken, or holding the arm alone takes too much torque.
         if attempt == ATTEMPTS || slowdown <= 1.0 || slowdown.is_infinite() {
-            return Err(not_met(&audit));
+            let weak = slowdown.is_infinite().then(|| too_weak_along(path, bounds)).flatten();
+            return Err(weak.unwrap_or_else(|| not_met(&audit)));
         }
         duration = slowed(&trajectory, slowdown);
         if !duration.is_finite() {

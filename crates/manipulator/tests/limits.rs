@@ -153,17 +153,33 @@ fn an_arm_too_weak_to_hold_itself_is_refused_by_name() {
     robot.limits.effort[1] = 5.0;
     let mut random = Random(89);
     let path = random_path(&robot, 0.5, 40, &mut random);
-    match time_path(&robot, &path, &TimingOptions::default()).unwrap_err() {
-        ManipulatorError::HoldingTorque { joint, needed, effort } => {
-            assert!(joint == "shoulder_lift_joint" && needed > 5.0 && effort == 5.0);
-        }
-        other => panic!("{other}"),
-    }
+    let refused = time_path(&robot, &path, &TimingOptions::default()).unwrap_err();
+    assert!(refused.to_string().contains("hold the arm still near pose"), "{refused}");
+    let path_place = assert_too_weak(&robot, refused);
+    let poses = path.pose_parameters();
+    let nearest = &path.at(poses[path_place.0.unwrap()])[0];
+    let spacing = poses.windows(2).map(|pair| (&path.at(pair[1])[0] - &path.at(pair[0])[0]).amax()).fold(0.0, f64::max);
+    assert!((nearest - &path_place.1).amax() <= spacing, "the pose is not the nearest");
+
     let (from, to) = (DVector::zeros(6), DVector::from_element(6, -0.1));
-    assert!(matches!(
-        rest_to_rest(&robot, &from, &to, &TimingOptions::default()),
-        Err(ManipulatorError::LimitsNotMet { .. })
-    ));
+    let refused = rest_to_rest(&robot, &from, &to, &TimingOptions::default()).unwrap_err();
+    let message = refused.to_string();
+    assert!(message.contains("\"shoulder_lift_joint\" needs") && message.contains("more than its limit"), "{message}");
+    let (pose, at) = assert_too_weak(&robot, refused);
+    assert!(pose.is_none() && (0..6).all(|j| at[j] <= 1e-12 && at[j] >= -0.1 - 1e-12), "{at}");
+}
+
+/// The pose and the configuration that a refusal names; the joint does need that much there, by the dynamics themselves.
+fn assert_too_weak(robot: &Robot, refused: ManipulatorError) -> (Option<usize>, DVector<f64>) {
+    let ManipulatorError::HoldingTorque { joint, pose, configuration, needed, effort } = refused else {
+        panic!("{refused}")
+    };
+    assert!(joint == "shoulder_lift_joint" && needed > 5.0 && effort == 5.0);
+    let mut torque = [0.0; 6];
+    robot.dynamics.as_ref().unwrap().torque(&configuration, &[0.0; 6], &[0.0; 6], &mut torque);
+    // The same function at the same place; friction of this arm is none.
+    assert_eq!(torque[1].abs(), needed);
+    (pose, DVector::from_vec(configuration))
 }
 
 #[test]
