@@ -5,9 +5,10 @@
 mod support;
 
 use std::collections::BTreeMap;
+use std::fmt::{Display, Formatter};
 use std::time::Instant;
 
-use planner::manipulator::{ManipulatorError, Robot, audit};
+use planner::manipulator::{Audit, ManipulatorError, Robot, audit};
 use planner::reorder::{Options, Topology, order_poses};
 use planner::se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, centripetal_knots};
 use planner::{Plan, Refusal, plan};
@@ -36,7 +37,7 @@ fn assert_planned_or_truly_refused(name: &str) {
     let cases = std::env::var("REORDER_SOAK_CASES").ok().map_or(SAMPLE, |n| n.parse().unwrap());
     let first = std::env::var("REORDER_SOAK_FIRST").ok().map_or(0, |n| n.parse().unwrap());
     let robot = Robot::shipped(name).unwrap();
-    let (mut planned, mut worst_ratio, mut times_s) = (0, 0.0_f64, Vec::new());
+    let (mut planned, mut worst, mut times_s) = (0, Worst::default(), Vec::new());
     let mut refused = BTreeMap::<String, usize>::new();
     let mut complaints = Vec::new();
     for seed in first..first + cases {
@@ -47,8 +48,7 @@ fn assert_planned_or_truly_refused(name: &str) {
         match outcome {
             Ok(plan) => {
                 planned += 1;
-                let ratio = audit(&robot, &plan.trajectory).max_ratio;
-                worst_ratio = worst_ratio.max(ratio.velocity).max(ratio.acceleration).max(ratio.jerk);
+                worst.take(&audit(&robot, &plan.trajectory));
                 complaints.extend(fault_of(&robot, &set, &plan).map(|fault| format!("{name} {seed}: {fault}")));
             }
             Err(refusal) => {
@@ -62,14 +62,47 @@ fn assert_planned_or_truly_refused(name: &str) {
     }
     times_s.sort_by(f64::total_cmp);
     let quantile = |part: f64| 1e3 * times_s[(part * (times_s.len() - 1) as f64).round() as usize];
-    println!("| arm | planned | refused | worst ratio | median | p95 |\n|---|---|---|---|---|---|");
     println!(
-        "| {name} | {planned} of {cases} | {refused:?} | {worst_ratio:.6} | {:.0} ms | {:.0} ms |",
+        "| arm | planned | refused | worst ratio of velocity, acceleration, jerk, torque | least margin | median | p95 |"
+    );
+    println!("|---|---|---|---|---|---|---|");
+    println!(
+        "| {name} | {planned} of {cases} | {refused:?} | {worst} | {:.0} ms | {:.0} ms |",
         quantile(0.5),
         quantile(0.95)
     );
     assert!(complaints.is_empty(), "{} faults:\n{}", complaints.len(), complaints.join("\n"));
     assert!(4 * planned > cases, "too few were planned to say anything");
+}
+
+/// The worst of many audits: greatest ratios of peak to limit, and the least distance to a position limit in rad.
+struct Worst {
+    ratios: [f64; 4],
+    margin_rad: f64,
+}
+
+impl Default for Worst {
+    fn default() -> Self {
+        Self { ratios: [0.0; 4], margin_rad: f64::INFINITY }
+    }
+}
+
+impl Worst {
+    fn take(&mut self, audit: &Audit) {
+        let found = audit.max_ratio;
+        let ratios = [found.velocity, found.acceleration, found.jerk, found.torque.unwrap_or(f64::NAN)];
+        for (worst, ratio) in self.ratios.iter_mut().zip(ratios) {
+            *worst = worst.max(ratio);
+        }
+        self.margin_rad = self.margin_rad.min(audit.position_margin);
+    }
+}
+
+impl Display for Worst {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let [velocity, acceleration, jerk, torque] = self.ratios;
+        write!(f, "{velocity:.6}, {acceleration:.6}, {jerk:.6}, {torque:.6} | {:.1e} rad", self.margin_rad)
+    }
 }
 
 fn kind(refusal: &Refusal) -> &'static str {
