@@ -87,7 +87,7 @@ pub fn audit_under(robot: &Robot, trajectory: &JointTrajectory, rules: AuditRule
     if trajectory.joint_names == robot.chain.joint_names() && robot.check_limits().is_ok() {
         return against_from(&Bounds::new(robot, robot.limits.clone(), rules), trajectory, from).audit;
     }
-    // Judged joint by joint in order: under other names that would be somebody else's limits.
+    // Judged joint by joint in order: under other names that would be somebody else's limits, and limits that are none allow everything.
     Audit { duration_s: trajectory.duration_s(), points: trajectory.points.len(), ..Audit::failed() }
 }
 

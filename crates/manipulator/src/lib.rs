@@ -63,6 +63,7 @@ mod sampling;
 mod slowing;
 mod speed_profile;
 mod stations;
+mod tightening;
 mod timing;
 mod tolerance;
 mod trajectory;

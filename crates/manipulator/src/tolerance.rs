@@ -115,7 +115,7 @@ impl Interval<'_> {
                 return Err(ManipulatorError::JointLimit {
                     pose: self.pose(),
                     joint: robot.chain.joint_names()[joint].clone(),
-                    value: if greatest > upper { greatest } else { least },
+                    value: if greatest - upper > lower - least { greatest } else { least },
                     lower,
                     upper,
                 });

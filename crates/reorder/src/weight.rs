@@ -57,9 +57,9 @@ pub enum Weight {
 
 /// Rounds of ordering and weighing; the weight hardly changes after the second.
 const ROUNDS: usize = 3;
-/// The exponent of rotations. They are the rougher part of most recordings: with half, more of them came out right than with the
-/// whole, or a quarter.
-const SHARE: f64 = 0.5;
+/// Of R in the product T·√R that is made small. Rotations are the rougher part of most recordings: with half, more of them came out
+/// right than with the whole, or a quarter.
+const ROTATION_EXPONENT: f64 = 0.5;
 /// Weights from which the search begins anew, as shares of the one that it ended with.
 const ELSEWHERE: [f64; 2] = [0.25, 4.0];
 /// Sums of angles that are less than this per point are rounding.
@@ -136,10 +136,10 @@ impl Sums {
         self.translations_m / self.rotations_rad
     }
     fn weight(&self) -> f64 {
-        SHARE * self.ratio()
+        ROTATION_EXPONENT * self.ratio()
     }
     fn product(&self) -> f64 {
-        self.translations_m * self.rotations_rad.powf(SHARE)
+        self.translations_m * self.rotations_rad.powf(ROTATION_EXPONENT)
     }
 }
 
