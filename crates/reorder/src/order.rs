@@ -21,6 +21,7 @@ use crate::sweep::sweep;
 use crate::topology::{beyond_ends, clearly_closes, rotate_to};
 use crate::tour::Problem;
 use crate::walk::far_end;
+use crate::walk::is_path;
 
 /// Sets of more points are repaired only on demand: the searches would take minutes.
 pub const MOST_REPAIRED_UNASKED: usize = 3000;
@@ -73,10 +74,13 @@ pub(crate) fn order_among<M: Manifold>(
     let joined = options.topology == TopologyChoice::Closed && is_clean_arc(manifold, points, &recovery);
     let mendable = !examined.doubts.searchable.is_empty()
         || recovery.distinct.groups.len() < points.len() && !examined.doubts.firm.is_empty();
-    if !mendable || joined || !may_repair(points.len(), options) {
+    let by_tree = |examined: Examined, recovery, stable| {
         let recovery =
             if options.start.is_some() { recover(manifold, points, options, options.start)? } else { recovery };
-        return Ok(examined.answer(points.len(), recovery, tree_is_stable));
+        Ok(examined.answer(points.len(), recovery, stable))
+    };
+    if !mendable || joined || !may_repair(points.len(), options) {
+        return by_tree(examined, recovery, tree_is_stable);
     }
     let problem = Problem::new(manifold, points);
     let mut found = sequence(manifold, points, &problem, TURNING, &[], options.topology);
@@ -87,9 +91,11 @@ pub(crate) fn order_among<M: Manifold>(
     if after == recovery.edges() {
         examined.certified = false;
         examined.hear(agreement.doubts);
-        let recovery =
-            if options.start.is_some() { recover(manifold, points, options, options.start)? } else { recovery };
-        return Ok(examined.answer(points.len(), recovery, agreement.weight_stable.or(tree_is_stable)));
+        return by_tree(examined, recovery, agreement.weight_stable.or(tree_is_stable));
+    }
+    // A tree that nowhere branches is the shortest path of all. That another turns less, where gaps are uneven, is no reason to prefer it.
+    if is_path(&recovery.distinct.tree) {
+        return by_tree(examined, recovery, tree_is_stable);
     }
     turn_to_start(&mut found, &name, options.start)?;
     let mut examined = examine_repaired(manifold, points, &found, &name);

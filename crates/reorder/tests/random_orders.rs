@@ -6,7 +6,7 @@
 mod support;
 
 use reorder::{MethodChoice, Options, Verdict, nearest_chain, nn_crust, order};
-use se3_geom::Se3;
+use se3_geom::{Pose, Se3};
 use support::harmonics::*;
 use support::trials::{MOST_POINTS, Mix, Trial, any_trial, between, cases, print_by_kind, retraced, share, tried};
 use support::{Random, neighbours, shuffled, unshuffled};
@@ -14,21 +14,48 @@ use support::{Random, neighbours, shuffled, unshuffled};
 /// Upper ends of the classes of ε̂.
 const CLASSES: [f64; 5] = [0.4, 1.25, 2.0, 4.0, f64::INFINITY];
 
+/// Independent samples of a closed curve. Half of them are even in the logarithm of ε̂ from 0.2 to 1.25, half in that of n from 50 to
+/// 400, so that of sparse ones the spanning tree alone gets 0.97, 0.92 and 0.77 right: of eight points on such a curve nobody can tell
+/// the order. `None` where there would be too many.
+fn sample_by_density(random: &mut Random, index: usize) -> Option<(Measured<Se3>, Vec<Pose>)> {
+    let curve = Measured::closed(Se3::default(), pose_curve(random));
+    let n = if index.is_multiple_of(2) {
+        curve.count_for(between(random, 0.2, 1.25), Spacing::Iid)
+    } else {
+        between(random, 50.0, 400.0) as usize
+    };
+    (n <= MOST_POINTS).then(|| {
+        let samples = curve.sample(random, n, Spacing::Iid);
+        (curve, samples)
+    })
+}
+
+/// The 657th sample of the long run below, of epsilon 0.94: its tree is right, and a path through it that turns less costs less.
+#[test]
+fn a_tree_that_nowhere_branches_is_kept() {
+    let mut random = Random::seeded(41);
+    let mut index = 0;
+    let samples = loop {
+        let Some((_, samples)) = sample_by_density(&mut random, index) else { continue };
+        if index == 656 {
+            break samples;
+        }
+        // As much chance as the long run takes.
+        random.permutation(samples.len());
+        random.below(samples.len());
+        index += 1;
+    };
+    let trial = tried(&Se3::default(), &mut random, &samples, true, 0.94);
+    assert!(trial.exact && trial.found.verdict == Verdict::Ambiguous);
+}
+
 #[test]
 fn success_by_density() {
     let mut random = Random::seeded(41);
     let mut trials = Vec::new();
     while trials.len() < cases(25) {
-        let curve = Measured::closed(Se3::default(), pose_curve(&mut random));
-        // Half of the samples even in the logarithm of ε̂ from 0.2 to 1.25, half in that of n from 50 to 400, so that of sparse ones
-        // the spanning tree alone gets 0.97, 0.92 and 0.77 right: of eight points on such a curve nobody can tell the order.
-        let n = if trials.len() % 2 == 0 {
-            curve.count_for(between(&mut random, 0.2, 1.25), Spacing::Iid)
-        } else {
-            between(&mut random, 50.0, 400.0) as usize
-        };
-        if n <= MOST_POINTS {
-            let samples = curve.sample(&mut random, n, Spacing::Iid);
+        if let Some((curve, samples)) = sample_by_density(&mut random, trials.len()) {
+            let n = samples.len();
             let trial = tried(&curve.manifold, &mut random, &samples, true, curve.epsilon(&samples));
             let truth = neighbours(&(0..n).collect::<Vec<_>>(), true);
             let tree = Options { method: MethodChoice::Mst, ..Options::default() };
