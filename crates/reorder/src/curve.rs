@@ -60,6 +60,13 @@ impl<'a, M: Manifold> Curve<'a, M> {
         let p = self.point(at);
         Some(self.manifold.inner(p, u, v) / (self.manifold.norm(p, u) * self.manifold.norm(p, v)))
     }
+    /// Cosine of the angle between the neighbours of position k, if it is at most a right angle: the order turns back there.
+    pub(crate) fn turn_back(&self, k: usize) -> Option<f64> {
+        self.cosine(k, self.previous(k)?, self.next(k)?).filter(|&cosine| cosine >= 0.0)
+    }
+    pub(crate) fn turns_back(&self) -> bool {
+        (0..self.len()).any(|k| self.turn_back(k).is_some())
+    }
     pub(crate) fn rows_at(&self, a: usize, b: usize) -> [usize; 2] {
         [self.rows[a], self.rows[b]]
     }

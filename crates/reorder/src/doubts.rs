@@ -204,13 +204,8 @@ fn of_gap<M: Manifold>(curve: &Curve<M>, gaps: &[f64], repeated: &[bool], k: usi
 fn of_vertex<M: Manifold>(curve: &Curve<M>, found: &Sweep, k: usize) -> Vec<Doubt> {
     let row = curve.rows[k];
     let turn = curve.previous(k).zip(curve.next(k)).and_then(|(a, b)| {
-        let why = match curve.cosine(k, a, b) {
-            Some(cosine) if cosine >= 0.0 => {
-                format!("the order turns by {:.0} degrees at point {row}", 180.0 - cosine.min(1.0).acos().to_degrees())
-            }
-            _ => return None,
-        };
-        Some(Doubt { at: curve.rows_at(a, b), why })
+        let degrees = 180.0 - curve.turn_back(k)?.min(1.0).acos().to_degrees();
+        Some(Doubt { at: curve.rows_at(a, b), why: format!("the order turns by {degrees:.0} degrees at point {row}") })
     });
     let rival = found.rivals[k].map(|other| Doubt {
         at: curve.rows_at(k, other),

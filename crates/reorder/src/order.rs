@@ -93,8 +93,12 @@ pub(crate) fn order_among<M: Manifold>(
         examined.hear(agreement.doubts);
         return by_tree(examined, recovery, agreement.weight_stable.or(tree_is_stable));
     }
-    // A tree that nowhere branches is the shortest path of all. That another turns less, where gaps are uneven, is no reason to prefer it.
-    if is_path(&recovery.distinct.tree) {
+    // A tree that is a path, and nowhere turns back, is not given up for a path that does.
+    let turns_back = |rows: &[usize], closed| Curve::new(manifold, points, rows, closed).turns_back();
+    if is_path(&recovery.distinct.tree)
+        && turns_back(&found.rows, found.closed)
+        && !turns_back(&recovery.rows, recovery.closed)
+    {
         return by_tree(examined, recovery, tree_is_stable);
     }
     turn_to_start(&mut found, &name, options.start)?;
