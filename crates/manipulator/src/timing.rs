@@ -185,7 +185,9 @@ fn optimised(
     options: &TimingOptions,
     sampling: &Sampling<'_>,
 ) -> Result<Optimised> {
-    let (mut gridpoints, second_order_duration) = grid(path, bounds, options, 1)?;
+    let coarse = Coarse::new(path, bounds, options)?;
+    let second_order_duration = coarse.duration();
+    let mut gridpoints = coarse.grid(1)?;
     let jerk_limited = options.limits == JointLimits::Jerk;
     let window = WINDOW_STEPS[usize::from(!jerk_limited)] / sampling.rate_hz;
     let mut seed: Option<Vec<f64>> = None;
@@ -211,7 +213,7 @@ fn optimised(
         let too_strong = bounds.rules.torque && audit.max_ratio.torque.is_some_and(|ratio| ratio > 1.0);
         seed = Some(squared_speeds);
         if too_coarse && !too_strong {
-            gridpoints = grid(path, bounds, options, 2)?.0;
+            gridpoints = coarse.grid(2)?;
             seed = None;
         } else if !good_enough {
             tighten(&mut gridpoints, bounds, &trajectory, &profile, too_strong);
@@ -234,31 +236,52 @@ fn optimised(
     Ok(Optimised { duration, profile, legal, second_order_duration, first_duration })
 }
 
-/// Gridpoints that share the path and its second-order time evenly, half and half.
-fn grid(path: &JointPath, bounds: &Bounds<'_>, options: &TimingOptions, density: usize) -> Result<(Grid, f64)> {
-    let (first, last) = path.domain();
-    let coarse = COARSE_POINTS.max(4 * path.knots().len());
-    let even_grid = even_grid(path, bounds, options, coarse)?;
-    let (_, times) = even_grid.second_order(None)?;
-    let even = even_grid.parameters;
-    let duration = times[coarse];
-    let share = |k: usize| 0.5 * (k as f64 / coarse as f64 + times[k] / duration);
-    let points = match options.limits {
-        JointLimits::Jerk => ((duration * GRIDPOINTS_PER_SECOND) as usize).max(path.knots().len()).clamp(100, 400),
-        JointLimits::Acceleration => coarse,
-    } * density;
-    let mut parameters = Vec::with_capacity(points + 1);
-    let mut k = 0;
-    for i in 0..=points {
-        let wanted = i as f64 / points as f64;
-        while k + 1 < coarse && share(k + 1) < wanted {
-            k += 1;
-        }
-        let fraction = ((wanted - share(k)) / (share(k + 1) - share(k))).clamp(0.0, 1.0);
-        parameters.push(even[k] + fraction * (even[k + 1] - even[k]));
+/// A first solution without jerk limits, by which the gridpoints of the others are placed.
+struct Coarse<'a> {
+    path: &'a JointPath,
+    bounds: &'a Bounds<'a>,
+    options: &'a TimingOptions,
+    /// Evenly spaced.
+    parameters: Vec<f64>,
+    /// When the solution is there.
+    times: Vec<f64>,
+}
+
+impl<'a> Coarse<'a> {
+    fn new(path: &'a JointPath, bounds: &'a Bounds<'a>, options: &'a TimingOptions) -> Result<Self> {
+        let even = even_grid(path, bounds, options, COARSE_POINTS.max(4 * path.knots().len()))?;
+        let (_, times) = even.second_order(None)?;
+        Ok(Self { path, bounds, options, parameters: even.parameters, times })
     }
-    parameters[points] = last;
-    Ok((Grid::new(path, parameters, duration / (last - first), bounds, greatest_tool_speed(options))?, duration))
+
+    fn duration(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+
+    /// Gridpoints that share the path and its second-order time evenly, half and half.
+    fn grid(&self, density: usize) -> Result<Grid> {
+        let (first, last) = self.path.domain();
+        let Self { parameters: even, times, .. } = self;
+        let (coarse, duration) = (even.len() - 1, self.duration());
+        let share = |k: usize| 0.5 * (k as f64 / coarse as f64 + times[k] / duration);
+        let knots = self.path.knots().len();
+        let points = match self.options.limits {
+            JointLimits::Jerk => ((duration * GRIDPOINTS_PER_SECOND) as usize).max(knots).clamp(100, 400),
+            JointLimits::Acceleration => coarse,
+        } * density;
+        let mut parameters = Vec::with_capacity(points + 1);
+        let mut k = 0;
+        for i in 0..=points {
+            let wanted = i as f64 / points as f64;
+            while k + 1 < coarse && share(k + 1) < wanted {
+                k += 1;
+            }
+            let fraction = ((wanted - share(k)) / (share(k + 1) - share(k))).clamp(0.0, 1.0);
+            parameters.push(even[k] + fraction * (even[k + 1] - even[k]));
+        }
+        parameters[points] = last;
+        Grid::new(self.path, parameters, duration / (last - first), self.bounds, greatest_tool_speed(self.options))
+    }
 }
 
 /// How long a trajectory takes when it is slowed down by that much: a thousandth more, so that a few rounds suffice and no
