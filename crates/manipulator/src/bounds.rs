@@ -93,7 +93,8 @@ impl<'a> Bounds<'a> {
             sampler.take(&mut found, &mut |_, _| ());
         }
         for interval in 0..trajectory.points.len().saturating_sub(1) {
-            sampler.interval(trajectory, interval, &mut found, &mut |_, _| ());
+            // Each begins where the one before ended.
+            sampler.interval(trajectory, interval, usize::from(interval > 0), &mut found, &mut |_, _| ());
         }
         found
     }
@@ -108,7 +109,7 @@ impl<'a> Bounds<'a> {
         };
         let mut note = |joint: usize, ratio: f64| torques[joint] = torques[joint].max(ratio);
         if self.samples_anything() {
-            self.sampler().interval(trajectory, interval, &mut found, &mut note);
+            self.sampler().interval(trajectory, interval, 0, &mut found, &mut note);
         }
         (torques, found)
     }
@@ -128,12 +129,13 @@ impl Sampler<'_> {
         &mut self,
         trajectory: &JointTrajectory,
         interval: usize,
+        first_part: usize,
         found: &mut Sampled,
         note: &mut impl FnMut(usize, f64),
     ) {
         let step = trajectory.points[interval + 1].time_s - trajectory.points[interval].time_s;
         let quintics: Vec<Quintic> = trajectory.quintics(interval).collect();
-        for part in 0..=PARTS {
+        for part in first_part..=PARTS {
             let t = step * part as f64 / PARTS as f64;
             for (joint, quintic) in quintics.iter().enumerate() {
                 let [q, rate, acceleration, _] = quintic.at(t);

@@ -80,32 +80,33 @@ impl Grid {
 
     /// The problem, with what is not linear in it taken at the squared speeds `about`.
     fn robot(&self, with_jerk: bool, about: Option<&[f64]>) -> Result<copp::robot::Robot<usize>> {
-        let build = || -> std::result::Result<copp::robot::Robot<usize>, CoppError> {
-            let n = self.parameters.len();
-            let [q, dq, ddq, dddq] = &self.derivatives;
-            let [velocity, acceleration, jerk] = &self.limits;
-            // The container keeps room for twice the gridpoints, and for third-order rows of as many joints as it is told of.
-            let mut robot = copp::robot::Robot::with_capacity(if with_jerk { q.nrows() } else { 0 }, 2 * n);
-            let rows = &mut robot.constraints;
-            rows.with_s(self.stations().as_slice())?
-                .with_constraint_1order(greatest_squared_speeds(dq, velocity).as_slice(), 0)?
-                .with_constraint_2order(&ddq.as_view(), &dq.as_view(), &acceleration.as_view(), 0, false)?
-                .with_constraint_2order(&ddq.as_view(), &dq.as_view(), &(-acceleration).as_view(), 0, true)?;
-            if let Some(tool) = &self.tool {
-                tool.add(rows)?;
-            }
-            if let Some(torque) = &self.torque {
-                // The scale makes speeds about 1.
-                let ones = vec![1.0; n];
-                torque.add(rows, about.unwrap_or(&ones))?;
-            }
-            if with_jerk {
-                robot
-                    .with_q(&q.as_view(), &dq.as_view(), &ddq.as_view(), Some(&dddq.as_view()), 0)?
-                    .with_axial_jerk(&jerk.as_view(), &(-jerk).as_view(), 0)?;
-            }
-            Ok(robot)
-        };
+        let build =
+            || -> std::result::Result<copp::robot::Robot<usize>, CoppError> {
+                let n = self.parameters.len();
+                let [q, dq, ddq, dddq] = &self.derivatives;
+                let [velocity, acceleration, jerk] = &self.limits;
+                // The container keeps room for twice the gridpoints, and for third-order rows of as many joints as it is told of.
+                let mut robot = copp::robot::Robot::with_capacity(if with_jerk { q.nrows() } else { 0 }, 2 * n);
+                let rows = &mut robot.constraints;
+                rows.with_s(self.stations().as_slice())?
+                    .with_constraint_1order(greatest_squared_speeds(dq, velocity).as_slice(), 0)?
+                    .with_constraint_2order(&ddq.as_view(), &dq.as_view(), &acceleration.as_view(), 0, false)?
+                    .with_constraint_2order(&ddq.as_view(), &dq.as_view(), &(-acceleration).as_view(), 0, true)?;
+                if let Some(tool) = &self.tool {
+                    tool.add(rows)?;
+                }
+                if let Some(torque) = &self.torque {
+                    // The scale makes speeds about 1.
+                    let ones = vec![1.0; n];
+                    torque.add(rows, about.unwrap_or(&ones))?;
+                }
+                if with_jerk {
+                    robot
+                        .with_q(&q.as_view(), &dq.as_view(), &ddq.as_view(), Some(&dddq.as_view()), 0)?
+                        .with_axial_jerk(&jerk.as_view(), &(-jerk).as_view(), 0)?;
+                }
+                Ok(robot)
+            };
         build().map_err(failed("the path was refused"))
     }
 
