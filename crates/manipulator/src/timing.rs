@@ -29,9 +29,10 @@ pub struct TimedPath {
     /// The least duration under limits of velocity and acceleration, of joints and tool, alone (TOPP2-RA), in s: with jerk limits it
     /// takes longer.
     pub second_order_duration_s: f64,
-    /// Duration of the first solution, before its limits were tightened where the audit found them broken, in s. What is executed may
-    /// even be shorter: with jerk limits a later round is linearised about a better solution.
-    pub first_solution_duration_s: f64,
+    /// The shortest duration of any round's solution, in s: legal at its gridpoints, before the audit looked between them. What the
+    /// audit's corrections cost is the duration of the trajectory over this. Rounds that were solved without torques that then
+    /// counted, or on gridpoints that proved too coarse, are left out.
+    pub shortest_solution_duration_s: f64,
 }
 
 /// Published steps over which the profile is averaged: with two, a jump of the jerk becomes a ramp that quintics follow; a jump of the
@@ -69,9 +70,9 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
     let simple = || {
         let profile = single_quintic(path, travel, &bounds.limits, 1.0 / options.rate_hz);
         let duration = profile.duration();
-        Optimised { duration, profile, legal: None, second_order_duration: duration, first_duration: duration }
+        Optimised { duration, profile, legal: None, second_order_duration: duration, shortest_duration: duration }
     };
-    let Optimised { duration, profile, legal, second_order_duration, first_duration } = if travel < TINY {
+    let Optimised { duration, profile, legal, second_order_duration, shortest_duration } = if travel < TINY {
         simple()
     } else {
         match optimised(path, &bounds, options, &sampling) {
@@ -101,7 +102,7 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
         knot_times_s,
         audit,
         second_order_duration_s: second_order_duration,
-        first_solution_duration_s: first_duration,
+        shortest_solution_duration_s: shortest_duration,
     })
 }
 
@@ -174,8 +175,8 @@ struct Optimised {
     /// The trajectory and its audit, where it needs no slowdown.
     legal: Option<Audited>,
     second_order_duration: f64,
-    /// Of the first solution, before any tightening and slowdown.
-    first_duration: f64,
+    /// Of the rounds' solutions, before any slowdown.
+    shortest_duration: f64,
 }
 
 /// The best of several rounds of solving and tightening.
@@ -192,7 +193,7 @@ fn optimised(
     let window = WINDOW_STEPS[usize::from(!jerk_limited)] / sampling.rate_hz;
     let mut seed: Option<Vec<f64>> = None;
     let mut best: Option<(f64, Smoothed, Option<Audited>)> = None;
-    let mut first_duration = None;
+    let mut shortest_duration = f64::INFINITY;
     for round in 0..=TIGHTENINGS {
         let solved = match jerk_limited {
             true => gridpoints.third_order(seed.as_deref()),
@@ -204,7 +205,7 @@ fn optimised(
             Err(_) if best.is_some() => break,
             Err(error) => return Err(error),
         };
-        first_duration.get_or_insert(profile.duration());
+        shortest_duration = shortest_duration.min(profile.duration());
         let trajectory = sample(path, &profile, profile.duration(), sampling)?;
         let Found { audit, slowdown } = against(bounds, &trajectory);
         // The first solution is linearised about one without jerk limits; the second, about the first, is faster.
@@ -215,10 +216,14 @@ fn optimised(
         if too_coarse && !too_strong {
             gridpoints = coarse.grid(2)?;
             seed = None;
+            shortest_duration = f64::INFINITY;
         } else if !good_enough {
             tighten(&mut gridpoints, bounds, &trajectory, &profile, too_strong);
         }
         if too_strong && !good_enough {
+            if gridpoints.torque.is_none() {
+                shortest_duration = f64::INFINITY;
+            }
             // After the tightening: by how much torques are too great while nothing limits them says nothing of what will be left.
             gridpoints.limit_torque(bounds)?;
         }
@@ -232,8 +237,9 @@ fn optimised(
     }
     let (duration, profile, legal) =
         best.ok_or_else(|| ManipulatorError::Timing { reason: "no round was solved".into() })?;
-    let first_duration = first_duration.unwrap_or(duration);
-    Ok(Optimised { duration, profile, legal, second_order_duration, first_duration })
+    // Infinite where no round was solved any more after the last that does not count.
+    let shortest_duration = shortest_duration.min(duration);
+    Ok(Optimised { duration, profile, legal, second_order_duration, shortest_duration })
 }
 
 /// A first solution without jerk limits, by which the gridpoints of the others are placed.

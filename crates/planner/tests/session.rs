@@ -72,7 +72,8 @@ fn poses_are_planned_and_published() {
     let plan = outcome.result.as_ref().unwrap();
     // 7i mod 10 = k has the solution i = 3k mod 10.
     assert_eq!(plan.ordering.order, [0, 3, 6, 9, 2, 5, 8, 1, 4, 7]);
-    let report: serde_json::Value = serde_json::from_str(&Report::of("ur5e", &outcome.result, outcome.motion.as_ref()).to_json()).unwrap();
+    let report: serde_json::Value =
+        serde_json::from_str(&Report::of("ur5e", &outcome.result, outcome.motion.as_ref()).to_json()).unwrap();
     for key in ["n", "order", "topology", "method", "verdict", "certificate", "doubts", "plan"] {
         assert!(!report[key].is_null(), "{key}");
     }
