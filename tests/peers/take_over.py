@@ -121,26 +121,28 @@ class Encounter:
             rclpy.spin_once(self.node, timeout_sec=JOINT_STATE_PERIOD_S)
 
     def run(self, recorded, limits):
-        self.wait_for("node", lambda: self.poses.get_subscription_count() and self.arm.sent >= JOINT_STATES_BEFORE_POSES)
+        self.wait_for("node", lambda: self.poses.get_subscription_count())
+        self.wait_for("listener to joint states", lambda: self.arm.sent >= JOINT_STATES_BEFORE_POSES)
         self.wait_for("publisher of trajectories", lambda: self.node.count_publishers("/joint_trajectory"))
-        starts, trajectories, reports, problems = [], [], [], []
+        starts, trajectories, problems = [], [], []
         for frame_id, rows in recorded:
+            if trajectories:
+                self.wait_for("motion", lambda: self.arm.elapsed_ns() > UNDER_WAY_NS)
             asked_ns = self.ask(frame_id, rows)
-            round_ = len(starts) + 1
-            self.wait_for(f"report {round_}", lambda: len(self.reports.heard) == round_)
-            reports.append(json.loads(self.reports.heard[-1][0].data))
-            if "refusal" in reports[-1]:
-                return [f"Poses {round_} were refused: {reports[-1]['refusal']}"]
-            self.wait_for(f"trajectory {round_}", lambda: len(self.trajectories.heard) == round_)
-            message, heard_ns = self.trajectories.heard[-1]
+            k = len(trajectories)
+            self.wait_for(f"report {k}", lambda: len(self.reports.heard) > k)
+            report = json.loads(self.reports.heard[k][0].data)
+            if "refusal" in report:
+                return [f"Pose set {k} was refused: {report['refusal']}"]
+            self.wait_for(f"trajectory {k}", lambda: len(self.trajectories.heard) > k)
+            message, heard_ns = self.trajectories.heard[k]
             trajectories.append(trajectory_of(message))
             starts.append(message.header.stamp.sec * 10**9 + message.header.stamp.nanosec)
             # It begins when it is published, or at the last point before of what is running.
-            if not asked_ns - POINT_NS <= starts[-1] <= heard_ns:
-                problems.append(f"Trajectory {round_} starts {(starts[-1] - asked_ns) / 1e9} s after it was asked for.")
-            self.arm.execute(trajectories[-1], starts[-1])
-            self.wait_for("motion", lambda: self.arm.elapsed_ns() > UNDER_WAY_NS or round_ == len(recorded))
-        plan = reports[-1]["plan"]
+            if not asked_ns - POINT_NS <= starts[k] <= heard_ns:
+                problems.append(f"Trajectory {k} starts {(starts[k] - asked_ns) / 1e9} s after it was asked for.")
+            self.arm.execute(trajectories[k], starts[k])
+        plan = report["plan"]
         offset_ns = starts[1] - starts[0]
         problems += check_report(plan, trajectories[-1])
         problems += check_handover(*trajectories, offset_ns, plan["takes_over_s"], limits)
@@ -162,7 +164,8 @@ def check_report(plan, trajectory):
     end_s = trajectory.times_ns[-1] / 1e9
     problems = []
     if abs(plan["duration_s"] - end_s) > 1e-9 or plan["points"] != len(trajectory.times_ns):
-        problems.append(f"The report is of {plan['points']} points in {plan['duration_s']} s, not of what was published.")
+        said = f"{plan['points']} points in {plan['duration_s']} s"
+        problems.append(f"The report is of {said}, not of what was published.")
     first_s, last_s = min(plan["pose_times_s"]), max(plan["pose_times_s"])
     if not plan["takes_over_s"] + plan["approach_s"] <= first_s + 1e-9 <= last_s <= end_s + 1e-9:
         problems.append(f"Poses are said to be passed from {first_s} s to {last_s} s, of {end_s} s.")
