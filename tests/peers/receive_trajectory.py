@@ -96,15 +96,20 @@ def receive(timeout_s):
     return got
 
 
-def judge(got, report, limits, recorded, out):
-    message, ordered = got["/joint_trajectory"], got["/reorder/ordered_poses"]
-    trajectory = Trajectory(
+def trajectory_of(message):
+    """What a trajectory_msgs/JointTrajectory says, as plain lists."""
+    return Trajectory(
         list(message.joint_names),
         [p.time_from_start.sec * 10**9 + p.time_from_start.nanosec for p in message.points],
         [list(p.positions) for p in message.points],
         [list(p.velocities) for p in message.points],
         [list(p.accelerations) for p in message.points],
     )
+
+
+def judge(got, report, limits, recorded, out):
+    message, ordered = got["/joint_trajectory"], got["/reorder/ordered_poses"]
+    trajectory = trajectory_of(message)
     rows = [pose_row(pose) for pose in ordered.poses]
     problems, ratios = check_trajectory(trajectory, limits)
     problems += check_ordered_poses(rows, report, recorded and recorded[1])

@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use crate::audit::AuditRules;
 use crate::chain::Chain;
 use crate::dynamics::Dynamics;
+use crate::holding::holding_torque;
 use crate::quintic::Quintic;
 use crate::robot::{Limits, Robot};
 use crate::trajectory::JointTrajectory;
@@ -66,14 +67,7 @@ impl<'a> Bounds<'a> {
     fn sampler(&self) -> Sampler<'_> {
         let dof = self.limits.lower.len();
         let zeros = DVector::zeros(dof);
-        Sampler {
-            bounds: self,
-            q: zeros.clone(),
-            rates: zeros.clone(),
-            accelerations: zeros,
-            torque: vec![0.0; dof],
-            holding: vec![0.0; dof],
-        }
+        Sampler { bounds: self, q: zeros.clone(), rates: zeros.clone(), accelerations: zeros, torque: vec![0.0; dof] }
     }
 
     /// Torque and tool over the whole trajectory.
@@ -93,7 +87,8 @@ impl<'a> Bounds<'a> {
             sampler.take(&mut found, &mut |_, _| ());
         }
         for interval in 0..trajectory.points.len().saturating_sub(1) {
-            sampler.interval(trajectory, interval, &mut found, &mut |_, _| ());
+            // Each begins where the one before ended.
+            sampler.interval(trajectory, interval, usize::from(interval > 0), &mut found, &mut |_, _| ());
         }
         found
     }
@@ -108,7 +103,7 @@ impl<'a> Bounds<'a> {
         };
         let mut note = |joint: usize, ratio: f64| torques[joint] = torques[joint].max(ratio);
         if self.samples_anything() {
-            self.sampler().interval(trajectory, interval, &mut found, &mut note);
+            self.sampler().interval(trajectory, interval, 0, &mut found, &mut note);
         }
         (torques, found)
     }
@@ -120,7 +115,6 @@ struct Sampler<'a> {
     rates: DVector<f64>,
     accelerations: DVector<f64>,
     torque: Vec<f64>,
-    holding: Vec<f64>,
 }
 
 impl Sampler<'_> {
@@ -128,12 +122,13 @@ impl Sampler<'_> {
         &mut self,
         trajectory: &JointTrajectory,
         interval: usize,
+        first_part: usize,
         found: &mut Sampled,
         note: &mut impl FnMut(usize, f64),
     ) {
         let step = trajectory.points[interval + 1].time_s - trajectory.points[interval].time_s;
         let quintics: Vec<Quintic> = trajectory.quintics(interval).collect();
-        for part in 0..=PARTS {
+        for part in first_part..=PARTS {
             let t = step * part as f64 / PARTS as f64;
             for (joint, quintic) in quintics.iter().enumerate() {
                 let [q, rate, acceleration, _] = quintic.at(t);
@@ -177,10 +172,9 @@ impl Sampler<'_> {
 
     /// Slower by r, the part of the torque that moves the links falls by r² while what holds them stays; damping, which falls by r, is
     /// left to the next attempt. Infinite where holding alone takes too much.
-    fn torque_slowdown(&mut self, dynamics: &Dynamics) -> f64 {
-        let rest = vec![0.0; self.torque.len()];
-        dynamics.torque(self.q.as_slice(), &rest, &rest, &mut self.holding);
-        let joints = self.torque.iter().zip(&self.holding).zip(&self.bounds.limits.effort).zip(dynamics.drives());
+    fn torque_slowdown(&self, dynamics: &Dynamics) -> f64 {
+        let holding = holding_torque(dynamics, &self.q);
+        let joints = self.torque.iter().zip(&holding).zip(&self.bounds.limits.effort).zip(dynamics.drives());
         joints
             .filter(|(((torque, _), effort), _)| torque.abs() > **effort)
             .map(|(((torque, holding), effort), drive)| {

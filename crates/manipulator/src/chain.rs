@@ -121,18 +121,8 @@ impl Chain {
         pose
     }
 
-    /// exp(Bᵢq). Axes have unit length, so that one sine and one cosine suffice (Lynch & Park, eq. 3.88).
     fn joint_motion(&self, joint: usize, q: f64) -> Pose {
-        let Twist { linear, angular } = self.screws[joint];
-        if !self.rotary[joint] {
-            return Pose::from_parts((linear * q).into(), UnitQuaternion::identity());
-        }
-        let (half_sine, half_cosine) = (0.5 * q).sin_cos();
-        let (sine, versine) = (2.0 * half_sine * half_cosine, 2.0 * half_sine * half_sine);
-        let along = angular * (angular.dot(&linear) * (q - sine));
-        let translation = linear * sine + angular.cross(&linear) * versine + along;
-        let rotation = Quaternion::from_parts(half_cosine, angular * half_sine);
-        Pose::from_parts(translation.into(), UnitQuaternion::new_unchecked(rotation))
+        joint_motion(&self.screws[joint], self.rotary[joint], q)
     }
 
     /// For every joint the greatest length that a unit of its motion moves the tool's origin by, in m (1 for a sliding joint), with
@@ -188,6 +178,22 @@ impl Chain {
         let change = Twist::from_vector(&(&jacobian * accelerations + Self::velocity_product(&jacobian, rates)));
         (twist.linear, change.linear + twist.angular.cross(&twist.linear))
     }
+}
+
+/// exp(Bq) of a turning or sliding joint's screw B. Axes have unit length, so that one sine and one cosine suffice (Lynch & Park,
+/// eq. 3.88).
+#[inline]
+pub(crate) fn joint_motion(screw: &Twist, is_rotary: bool, q: f64) -> Pose {
+    let Twist { linear, angular } = *screw;
+    if !is_rotary {
+        return Pose::from_parts((linear * q).into(), UnitQuaternion::identity());
+    }
+    let (half_sine, half_cosine) = (0.5 * q).sin_cos();
+    let (sine, versine) = (2.0 * half_sine * half_cosine, 2.0 * half_sine * half_sine);
+    let along = angular * (angular.dot(&linear) * (q - sine));
+    let translation = linear * sine + angular.cross(&linear) * versine + along;
+    let rotation = Quaternion::from_parts(half_cosine, angular * half_sine);
+    Pose::from_parts(translation.into(), UnitQuaternion::new_unchecked(rotation))
 }
 
 /// The Lie bracket \[a, b\] of two twists.

@@ -1,9 +1,9 @@
 //! Inverse dynamics of a serial chain: the torques that a motion needs.
 
-use nalgebra::Vector3;
-use se3_geom::{LieGroup, Se3Group, Twist};
+use nalgebra::{Matrix3, Vector3};
+use se3_geom::Twist;
 
-use crate::chain::{Chain, bracket};
+use crate::chain::{Chain, bracket, joint_motion};
 use crate::error::{ManipulatorError, Result};
 use crate::inertia::Inertia;
 
@@ -44,14 +44,16 @@ pub struct Dynamics {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Joint {
     screw: Twist,
+    is_rotary: bool,
     link: Inertia,
     drive: Drive,
 }
 
-/// Of one link in its own frame.
+/// Of one link in its own frame, which lies in its parent's turned by `turn` and moved by `offset`.
 #[derive(Debug, Clone, Copy)]
 struct LinkState {
-    parent_from_link: se3_geom::Pose,
+    turn: Matrix3<f64>,
+    offset: Vector3<f64>,
     force: Vector3<f64>,
     moment: Vector3<f64>,
 }
@@ -89,7 +91,10 @@ impl Dynamics {
         let tool_from_base = chain.home().inverse();
         let joints = chain.screws().iter().zip(links).zip(drives);
         let joints = joints
-            .map(|((&screw, link), &drive)| Joint { screw, link: link.in_parent(&tool_from_base), drive })
+            .map(|((&screw, link), &drive)| {
+                let is_rotary = screw.angular != Vector3::zeros();
+                Joint { screw, is_rotary, link: link.in_parent(&tool_from_base), drive }
+            })
             .collect();
         Ok(Self { joints, lift: tool_from_base.rotation * -Vector3::from(gravity_m_s2) })
     }
@@ -119,7 +124,8 @@ impl Dynamics {
     /// The same without damping and dry friction: quadratic in the rates.
     pub(crate) fn rigid_torque(&self, q: &[f64], rates: &[f64], accelerations: &[f64], torque: &mut [f64]) {
         let zero = LinkState {
-            parent_from_link: se3_geom::Pose::identity(),
+            turn: Matrix3::identity(),
+            offset: Vector3::zeros(),
             force: Vector3::zeros(),
             moment: Vector3::zeros(),
         };
@@ -134,15 +140,21 @@ impl Dynamics {
         let mut velocity = Twist::zero();
         let mut acceleration = Twist::new(self.lift, Vector3::zeros());
         for (i, (joint, state)) in self.joints.iter().zip(&mut *links).enumerate() {
-            let parent_from_link = Se3Group::exp(joint.screw * q[i]);
+            let parent_from_link = joint_motion(&joint.screw, joint.is_rotary, q[i]);
+            let turn = parent_from_link.rotation.to_rotation_matrix().into_inner();
+            let offset = parent_from_link.translation.vector;
+            // Ad(parent_from_link⁻¹).
+            let into_link = |twist: Twist| {
+                Twist::new(turn.tr_mul(&(twist.linear - offset.cross(&twist.angular))), turn.tr_mul(&twist.angular))
+            };
             let own = joint.screw * rates[i];
-            velocity = into_link(&parent_from_link, velocity) + own;
-            acceleration =
-                into_link(&parent_from_link, acceleration) + bracket(velocity, own) + joint.screw * accelerations[i];
+            velocity = into_link(velocity) + own;
+            acceleration = into_link(acceleration) + bracket(velocity, own) + joint.screw * accelerations[i];
             let (force, moment) = joint.link.momentum(acceleration.linear, acceleration.angular);
             let (momentum, spin) = joint.link.momentum(velocity.linear, velocity.angular);
             *state = LinkState {
-                parent_from_link,
+                turn,
+                offset,
                 force: force + velocity.angular.cross(&momentum),
                 moment: moment + velocity.angular.cross(&spin) + velocity.linear.cross(&momentum),
             };
@@ -154,17 +166,10 @@ impl Dynamics {
             torque[i] = joint.screw.linear.dot(&force)
                 + joint.screw.angular.dot(&moment)
                 + joint.drive.rotor_inertia_kg_m2 * accelerations[i];
-            force = state.parent_from_link.rotation * force;
-            moment = state.parent_from_link.rotation * moment + state.parent_from_link.translation.vector.cross(&force);
+            force = state.turn * force;
+            moment = state.turn * moment + state.offset.cross(&force);
         }
     }
-}
-
-/// Ad(parent_from_link⁻¹) of a twist.
-fn into_link(parent_from_link: &se3_geom::Pose, twist: Twist) -> Twist {
-    let back = parent_from_link.rotation.inverse();
-    let offset = parent_from_link.translation.vector;
-    Twist::new(back * (twist.linear - offset.cross(&twist.angular)), back * twist.angular)
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use se3_geom::Pose;
+use se3_geom::{LieGroup, Pose, Se3Group};
 
 use super::*;
 

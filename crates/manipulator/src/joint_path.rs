@@ -38,6 +38,12 @@ impl JointPath {
         self.spline.at(s)
     }
 
+    /// q, q′, q″ and q‴ of each joint in turn at `s`, without memory from the heap.
+    pub(crate) fn joints_at(&self, s: f64) -> impl ExactSizeIterator<Item = [f64; 4]> + '_ {
+        let (polynomials, local) = self.spline.polynomials_at(s);
+        polynomials.iter().map(move |polynomial| polynomial.at(local))
+    }
+
     /// The parameter at which each input pose is passed, increasing.
     pub fn pose_parameters(&self) -> &[f64] {
         &self.pose_parameters

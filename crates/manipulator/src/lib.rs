@@ -40,6 +40,7 @@ mod dynamics;
 mod error;
 mod excess;
 mod follow;
+mod gridpoints;
 mod handover;
 mod holding;
 mod ik;

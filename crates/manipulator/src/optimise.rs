@@ -44,11 +44,12 @@ impl Grid {
     ) -> Result<Self> {
         let (dof, n) = (bounds.limits.lower.len(), parameters.len());
         let mut derivatives = [(); 4].map(|()| DMatrix::zeros(dof, n));
+        let per_scale = [0, 1, 2, 3].map(|order| f64::powi(scale, -order));
         for (k, &s) in parameters.iter().enumerate() {
-            let mut factor = 1.0;
-            for (matrix, value) in derivatives.iter_mut().zip(path.at(s)) {
-                matrix.set_column(k, &(value * factor));
-                factor /= scale;
+            for (joint, values) in path.joints_at(s).enumerate() {
+                for (order, value) in values.into_iter().enumerate() {
+                    derivatives[order][(joint, k)] = value * per_scale[order];
+                }
             }
         }
         // A path of NaN would make the reachability analysis return nonsense without a word.
@@ -79,30 +80,33 @@ impl Grid {
 
     /// The problem, with what is not linear in it taken at the squared speeds `about`.
     fn robot(&self, with_jerk: bool, about: Option<&[f64]>) -> Result<copp::robot::Robot<usize>> {
-        let build = || -> std::result::Result<copp::robot::Robot<usize>, CoppError> {
-            let n = self.parameters.len();
-            let mut robot = copp::robot::Robot::with_capacity(self.limits[0].nrows(), n);
-            let [q, dq, ddq, dddq] = &self.derivatives;
-            let [velocity, acceleration, jerk] = &self.limits;
-            let below = |m: &DMatrix<f64>| -m;
-            robot
-                .with_s(self.stations().as_slice())?
-                .with_q(&q.as_view(), &dq.as_view(), &ddq.as_view(), Some(&dddq.as_view()), 0)?
-                .with_axial_velocity(&velocity.as_view(), &below(velocity).as_view(), 0)?
-                .with_axial_acceleration(&acceleration.as_view(), &below(acceleration).as_view(), 0)?;
-            if with_jerk {
-                robot.with_axial_jerk(&jerk.as_view(), &below(jerk).as_view(), 0)?;
-            }
-            if let Some(tool) = &self.tool {
-                tool.add(&mut robot.constraints)?;
-            }
-            if let Some(torque) = &self.torque {
-                // The scale makes speeds about 1.
-                let ones = vec![1.0; n];
-                torque.add(&mut robot.constraints, about.unwrap_or(&ones))?;
-            }
-            Ok(robot)
-        };
+        let build =
+            || -> std::result::Result<copp::robot::Robot<usize>, CoppError> {
+                let n = self.parameters.len();
+                let [q, dq, ddq, dddq] = &self.derivatives;
+                let [velocity, acceleration, jerk] = &self.limits;
+                // The container keeps room for twice the gridpoints, and for third-order rows of as many joints as it is told of.
+                let mut robot = copp::robot::Robot::with_capacity(if with_jerk { q.nrows() } else { 0 }, 2 * n);
+                let rows = &mut robot.constraints;
+                rows.with_s(self.stations().as_slice())?
+                    .with_constraint_1order(greatest_squared_speeds(dq, velocity).as_slice(), 0)?
+                    .with_constraint_2order(&ddq.as_view(), &dq.as_view(), &acceleration.as_view(), 0, false)?
+                    .with_constraint_2order(&ddq.as_view(), &dq.as_view(), &(-acceleration).as_view(), 0, true)?;
+                if let Some(tool) = &self.tool {
+                    tool.add(rows)?;
+                }
+                if let Some(torque) = &self.torque {
+                    // The scale makes speeds about 1.
+                    let ones = vec![1.0; n];
+                    torque.add(rows, about.unwrap_or(&ones))?;
+                }
+                if with_jerk {
+                    robot
+                        .with_q(&q.as_view(), &dq.as_view(), &ddq.as_view(), Some(&dddq.as_view()), 0)?
+                        .with_axial_jerk(&jerk.as_view(), &(-jerk).as_view(), 0)?;
+                }
+                Ok(robot)
+            };
         build().map_err(failed("the path was refused"))
     }
 
@@ -167,6 +171,13 @@ impl Grid {
             .collect();
         Ok(SpeedProfile::through(times, &states))
     }
+}
+
+/// The greatest ṡ² at each gridpoint for which every |q′ṡ| is at most its limit.
+fn greatest_squared_speeds(first: &DMatrix<f64>, velocity: &DMatrix<f64>) -> Vec<f64> {
+    let of_joint = |(dq, limit): (&f64, &f64)| (limit / dq).powi(2);
+    let columns = first.column_iter().zip(velocity.column_iter());
+    columns.map(|(dq, limit)| dq.iter().zip(&limit).map(of_joint).fold(f64::INFINITY, f64::min)).collect()
 }
 
 fn floored(mut speeds: Vec<f64>) -> Vec<f64> {

@@ -58,10 +58,21 @@ impl QuinticSpline {
 
     /// q and its first three derivatives; beyond the ends the spline stays at its end.
     pub(crate) fn at(&self, s: f64) -> [DVector<f64>; 4] {
+        let (segment, local) = self.place(s);
+        self.in_segment(segment, local)
+    }
+
+    /// The polynomials of the segment in which `s` lies, one a joint, and how far into it.
+    pub(crate) fn polynomials_at(&self, s: f64) -> (&[Quintic], f64) {
+        let (segment, local) = self.place(s);
+        (&self.segments[segment], local)
+    }
+
+    fn place(&self, s: f64) -> (usize, f64) {
         let n = self.knots.len();
         let s = s.clamp(self.knots[0], self.knots[n - 1]);
         let segment = self.knots.partition_point(|&k| k <= s).clamp(1, n - 1) - 1;
-        self.in_segment(segment, s - self.knots[segment])
+        (segment, s - self.knots[segment])
     }
 
     /// The polynomials of a segment, one a joint.

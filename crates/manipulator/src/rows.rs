@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use crate::bounds::Bounds;
 use crate::dynamics::Dynamics;
-use crate::error::{ManipulatorError, Result};
+use crate::error::Result;
+use crate::holding::{holding_torque, lacking};
 
 /// Path derivatives q, q′, q″, q‴ by the optimiser's parameter, joint × gridpoint.
 pub(crate) type Derivatives = [DMatrix<f64>; 4];
@@ -27,7 +28,7 @@ const LEAST_SHARE: f64 = 0.05;
 
 impl TorqueRows {
     /// # Errors
-    /// [`ManipulatorError::HoldingTorque`] where a joint cannot even hold the arm.
+    /// [`crate::ManipulatorError::HoldingTorque`] where a joint cannot even hold the arm.
     pub(crate) fn new(bounds: &Bounds<'_>, dynamics: &Dynamics, derivatives: &Derivatives) -> Result<Self> {
         let [q, first, second, _] = derivatives;
         let (dof, n) = q.shape();
@@ -48,18 +49,15 @@ impl TorqueRows {
                 dynamics.rigid_torque(q.as_slice(), rates, accelerations, torque.as_mut_slice());
                 torque
             };
-            let holding = torque(&rest, &rest);
+            let holding = holding_torque(dynamics, &q);
+            if let Some((_, refusal)) = lacking(bounds, dynamics, &q, &holding, None) {
+                return Err(refusal);
+            }
             rows.of_acceleration.set_column(k, &(torque(&rest, first.as_slice()) - &holding));
             rows.of_squared_speed.set_column(k, &(torque(first.as_slice(), second.as_slice()) - &holding));
             rows.holding.set_column(k, &holding);
             for (joint, drive) in dynamics.drives().enumerate() {
                 rows.viscous[(joint, k)] = drive.damping_n_m_s * first[joint];
-                let (needed, effort) = (holding[joint].abs() + rows.dry[joint], bounds.limits.effort[joint]);
-                if needed >= effort {
-                    let joint = bounds.chain.joint_names()[joint].clone();
-                    let configuration = q.as_slice().to_vec();
-                    return Err(ManipulatorError::HoldingTorque { joint, pose: None, configuration, needed, effort });
-                }
             }
         }
         Ok(rows)

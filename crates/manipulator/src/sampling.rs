@@ -57,13 +57,15 @@ pub(crate) fn sample(
                 profile.at(time_s / stretch)
             };
             let (speed, acceleration) = (speed / stretch, acceleration / (stretch * stretch));
-            let [q, dq, ddq, _] = path.at(s);
-            JointPoint {
-                time_s,
-                positions: q.iter().copied().collect(),
-                velocities: (&dq * speed).iter().copied().collect(),
-                accelerations: (dq * acceleration + ddq * (speed * speed)).iter().copied().collect(),
+            let joints = path.joints_at(s);
+            let dof = joints.len();
+            let [mut positions, mut velocities, mut accelerations] = [(); 3].map(|()| Vec::with_capacity(dof));
+            for [q, dq, ddq, _] in joints {
+                positions.push(q);
+                velocities.push(dq * speed);
+                accelerations.push(dq * acceleration + ddq * (speed * speed));
             }
+            JointPoint { time_s, positions, velocities, accelerations }
         })
         .collect();
     Ok(JointTrajectory { joint_names: sampling.joint_names.to_vec(), points })

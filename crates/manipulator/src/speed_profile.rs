@@ -108,13 +108,15 @@ impl Smoothed {
 
     /// The time at which ŝ passes `s`.
     pub(crate) fn time_at(&self, s: f64) -> f64 {
-        let (mut before, mut after) = (0.0, self.duration());
         if s <= self.profile.ends[0] {
-            return before;
+            return 0.0;
         }
         if s >= self.profile.ends[1] {
-            return after;
+            return self.duration();
         }
+        // An average is late by at most its window.
+        let piece = self.profile.pieces.partition_point(|piece| piece.at(0.0)[0] <= s).max(1) - 1;
+        let (mut before, mut after) = (self.profile.times[piece], self.profile.times[piece + 1] + self.window);
         let mut time = 0.5 * (before + after);
         for _ in 0..60 {
             let [position, speed, _] = self.at(time);

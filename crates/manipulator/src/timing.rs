@@ -6,9 +6,9 @@ use crate::audit::{Audit, Found, against, audit_under};
 use crate::bounds::Bounds;
 use crate::constant_speed;
 use crate::error::{ManipulatorError, Result};
+use crate::gridpoints::{Coarse, even_grid};
 use crate::holding::too_weak_along;
 use crate::joint_path::JointPath;
-use crate::optimise::Grid;
 use crate::options::{JointLimits, TimingOptions};
 use crate::rest_to_rest::not_met;
 use crate::robot::{Limits, Robot};
@@ -29,18 +29,15 @@ pub struct TimedPath {
     /// The least duration under limits of velocity and acceleration, of joints and tool, alone (TOPP2-RA), in s: with jerk limits it
     /// takes longer.
     pub second_order_duration_s: f64,
-    /// Duration of the first solution, before its limits were tightened where the audit found them broken, in s. What is executed may
-    /// even be shorter: with jerk limits a later round is linearised about a better solution.
-    pub first_solution_duration_s: f64,
+    /// The shortest duration of any round's solution, in s: legal at its gridpoints, before the audit looked between them. What the
+    /// audit's corrections cost is the duration of the trajectory over this. Rounds that were solved without torques that then
+    /// counted, or on gridpoints that proved too coarse, are left out.
+    pub shortest_solution_duration_s: f64,
 }
 
 /// Published steps over which the profile is averaged: with two, a jump of the jerk becomes a ramp that quintics follow; a jump of the
 /// acceleration needs one to become a ramp.
 const WINDOW_STEPS: [f64; 2] = [2.0, 1.0];
-/// Gridpoints for the first, second-order pass; a bend that is shorter than two of them would be missed.
-const COARSE_POINTS: usize = 1000;
-/// A jerk of ten accelerations a second has a tenth of a second to build up an acceleration: three intervals resolve it.
-const GRIDPOINTS_PER_SECOND: f64 = 30.0;
 /// A first solution that is broken by more between its gridpoints needs twice as many: it has bends that they miss.
 const TOO_COARSE: f64 = 1.1;
 /// Rounds of tightening limits where the audit finds them broken.
@@ -69,9 +66,9 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
     let simple = || {
         let profile = single_quintic(path, travel, &bounds.limits, 1.0 / options.rate_hz);
         let duration = profile.duration();
-        Optimised { duration, profile, legal: None, second_order_duration: duration, first_duration: duration }
+        Optimised { duration, profile, legal: None, second_order_duration: duration, shortest_duration: duration }
     };
-    let Optimised { duration, profile, legal, second_order_duration, first_duration } = if travel < TINY {
+    let Optimised { duration, profile, legal, second_order_duration, shortest_duration } = if travel < TINY {
         simple()
     } else {
         match optimised(path, &bounds, options, &sampling) {
@@ -101,7 +98,7 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
         knot_times_s,
         audit,
         second_order_duration_s: second_order_duration,
-        first_solution_duration_s: first_duration,
+        shortest_solution_duration_s: shortest_duration,
     })
 }
 
@@ -116,16 +113,6 @@ pub fn least_duration_s(robot: &Robot, path: &JointPath, options: &TimingOptions
     let bounds = options.bounds(robot)?;
     let (_, times) = even_grid(path, &bounds, options, intervals.max(2))?.second_order(None)?;
     times.last().copied().ok_or(ManipulatorError::NonFinite { what: "the joint path" })
-}
-
-fn even_grid(path: &JointPath, bounds: &Bounds<'_>, options: &TimingOptions, intervals: usize) -> Result<Grid> {
-    let (first, last) = path.domain();
-    let even = (0..=intervals).map(|k| first + (last - first) * k as f64 / intervals as f64).collect();
-    Grid::new(path, even, 1.0 / (last - first), bounds, greatest_tool_speed(options))
-}
-
-fn greatest_tool_speed(options: &TimingOptions) -> Option<f64> {
-    options.constant_tool_speed_m_s.or(options.tool_speed_m_s)
 }
 
 /// Places between two knots at which travel is measured.
@@ -174,8 +161,8 @@ struct Optimised {
     /// The trajectory and its audit, where it needs no slowdown.
     legal: Option<Audited>,
     second_order_duration: f64,
-    /// Of the first solution, before any tightening and slowdown.
-    first_duration: f64,
+    /// Of the rounds' solutions, before any slowdown.
+    shortest_duration: f64,
 }
 
 /// The best of several rounds of solving and tightening.
@@ -185,12 +172,14 @@ fn optimised(
     options: &TimingOptions,
     sampling: &Sampling<'_>,
 ) -> Result<Optimised> {
-    let (mut gridpoints, second_order_duration) = grid(path, bounds, options, 1)?;
+    let coarse = Coarse::new(path, bounds, options)?;
+    let second_order_duration = coarse.duration();
+    let mut gridpoints = coarse.grid(1)?;
     let jerk_limited = options.limits == JointLimits::Jerk;
     let window = WINDOW_STEPS[usize::from(!jerk_limited)] / sampling.rate_hz;
     let mut seed: Option<Vec<f64>> = None;
     let mut best: Option<(f64, Smoothed, Option<Audited>)> = None;
-    let mut first_duration = None;
+    let mut shortest_duration = f64::INFINITY;
     for round in 0..=TIGHTENINGS {
         let solved = match jerk_limited {
             true => gridpoints.third_order(seed.as_deref()),
@@ -202,7 +191,7 @@ fn optimised(
             Err(_) if best.is_some() => break,
             Err(error) => return Err(error),
         };
-        first_duration.get_or_insert(profile.duration());
+        shortest_duration = shortest_duration.min(profile.duration());
         let trajectory = sample(path, &profile, profile.duration(), sampling)?;
         let Found { audit, slowdown } = against(bounds, &trajectory);
         // The first solution is linearised about one without jerk limits; the second, about the first, is faster.
@@ -211,12 +200,16 @@ fn optimised(
         let too_strong = bounds.rules.torque && audit.max_ratio.torque.is_some_and(|ratio| ratio > 1.0);
         seed = Some(squared_speeds);
         if too_coarse && !too_strong {
-            gridpoints = grid(path, bounds, options, 2)?.0;
+            gridpoints = coarse.grid(2)?;
             seed = None;
+            shortest_duration = f64::INFINITY;
         } else if !good_enough {
             tighten(&mut gridpoints, bounds, &trajectory, &profile, too_strong);
         }
         if too_strong && !good_enough {
+            if gridpoints.torque.is_none() {
+                shortest_duration = f64::INFINITY;
+            }
             // After the tightening: by how much torques are too great while nothing limits them says nothing of what will be left.
             gridpoints.limit_torque(bounds)?;
         }
@@ -230,35 +223,9 @@ fn optimised(
     }
     let (duration, profile, legal) =
         best.ok_or_else(|| ManipulatorError::Timing { reason: "no round was solved".into() })?;
-    let first_duration = first_duration.unwrap_or(duration);
-    Ok(Optimised { duration, profile, legal, second_order_duration, first_duration })
-}
-
-/// Gridpoints that share the path and its second-order time evenly, half and half.
-fn grid(path: &JointPath, bounds: &Bounds<'_>, options: &TimingOptions, density: usize) -> Result<(Grid, f64)> {
-    let (first, last) = path.domain();
-    let coarse = COARSE_POINTS.max(4 * path.knots().len());
-    let even_grid = even_grid(path, bounds, options, coarse)?;
-    let (_, times) = even_grid.second_order(None)?;
-    let even = even_grid.parameters;
-    let duration = times[coarse];
-    let share = |k: usize| 0.5 * (k as f64 / coarse as f64 + times[k] / duration);
-    let points = match options.limits {
-        JointLimits::Jerk => ((duration * GRIDPOINTS_PER_SECOND) as usize).max(path.knots().len()).clamp(100, 400),
-        JointLimits::Acceleration => coarse,
-    } * density;
-    let mut parameters = Vec::with_capacity(points + 1);
-    let mut k = 0;
-    for i in 0..=points {
-        let wanted = i as f64 / points as f64;
-        while k + 1 < coarse && share(k + 1) < wanted {
-            k += 1;
-        }
-        let fraction = ((wanted - share(k)) / (share(k + 1) - share(k))).clamp(0.0, 1.0);
-        parameters.push(even[k] + fraction * (even[k + 1] - even[k]));
-    }
-    parameters[points] = last;
-    Ok((Grid::new(path, parameters, duration / (last - first), bounds, greatest_tool_speed(options))?, duration))
+    // Infinite where no round was solved any more after the last that does not count.
+    let shortest_duration = shortest_duration.min(duration);
+    Ok(Optimised { duration, profile, legal, second_order_duration, shortest_duration })
 }
 
 /// How long a trajectory takes when it is slowed down by that much: a thousandth more, so that a few rounds suffice and no

@@ -97,6 +97,63 @@ fn a_stop_stays_on_the_path_and_within_the_limits() {
     assert!(2 * stopped > cases);
 }
 
+/// Per joint, the greatest torque from `at_s` on, ten times between points as the audit looks.
+fn greatest_torques(robot: &Robot, trajectory: &JointTrajectory, at_s: f64) -> Vec<f64> {
+    let left = trajectory.after(at_s);
+    let dof = robot.chain.dof();
+    let (mut torque, mut greatest) = (vec![0.0; dof], vec![0.0_f64; dof]);
+    for pair in left.points.windows(2) {
+        for part in 0..=10 {
+            let [q, rates, accelerations, _] =
+                left.at(pair[0].time_s + (pair[1].time_s - pair[0].time_s) * f64::from(part) / 10.0);
+            let state = [q, rates, accelerations];
+            robot.dynamics.as_ref().unwrap().torque(
+                state[0].as_slice(),
+                state[1].as_slice(),
+                state[2].as_slice(),
+                &mut torque,
+            );
+            greatest.iter_mut().zip(&torque).for_each(|(most, now)| *most = most.max(now.abs()));
+        }
+    }
+    greatest
+}
+
+/// Stops are looked for under limits of velocity, acceleration and jerk alone; it is their audit that counts torques.
+#[test]
+fn a_stop_that_takes_more_torque_than_there_is_is_not_returned() {
+    let mut random = Random(97);
+    let options = TimingOptions::default();
+    let mut too_hard = 0;
+    for _ in 0..6 {
+        let mut robot = Robot::shipped("panda").unwrap();
+        robot.limits.effort.fill(1e6);
+        let running = running(&robot, &mut random);
+        let at_s = running.points[(running.points.len() as f64 * (0.3 + 0.4 * random.unit())) as usize].time_s;
+        let hardest = slow_to_stop(&robot, &running, at_s, &options).unwrap();
+        // As much as the rest of the running trajectory takes, and a thousandth more.
+        let needed = greatest_torques(&robot, &running, at_s);
+        robot.limits.effort.iter_mut().zip(&needed).for_each(|(effort, needed)| *effort = 1.001 * needed);
+        let from = running.state_at(at_s);
+        let found = audit_from(&robot, &hardest, &from);
+        let stop = slow_to_stop(&robot, &running, at_s, &options).unwrap();
+        let judged = audit_from(&robot, &stop, &from);
+        assert!(judged.limits_ok && judged.max_ratio.torque.unwrap() <= 1.0, "{judged:?}");
+        if found.max_ratio.torque.unwrap() > 1.0 {
+            too_hard += 1;
+            assert!(!found.limits_ok && stop != hardest);
+            let ignored = slow_to_stop(&robot, &running, at_s, &TimingOptions { torque: false, ..options.clone() });
+            assert_eq!(ignored.unwrap(), hardest, "torques are ignored only where that is asked for");
+        }
+        // Where even going on takes too much there is nothing to return.
+        robot.limits.effort.iter_mut().zip(&needed).for_each(|(effort, needed)| *effort = 0.9 * needed);
+        let refused = slow_to_stop(&robot, &running, at_s, &options).unwrap_err();
+        let ManipulatorError::LimitsNotMet { torque, velocity, jerk, .. } = refused else { panic!("{refused}") };
+        assert!(torque > 1.0 && velocity <= 1.0 && jerk <= 1.0, "{refused}");
+    }
+    assert!(too_hard > 0, "no stop was too hard: the test shows nothing");
+}
+
 #[test]
 fn a_hand_over_begins_in_the_state_and_ends_at_rest_at_the_goal() {
     let mut random = Random(73);

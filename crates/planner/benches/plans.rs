@@ -38,7 +38,7 @@ fn main() {
         let (timed, timing_ms) = milliseconds(|| time_path(robot, &path, &TimingOptions::default()).unwrap());
         stages[2].push(timing_ms);
         ratios.push(timed.trajectory.duration_s() / timed.second_order_duration_s);
-        corrections.push(timed.trajectory.duration_s() / timed.first_solution_duration_s);
+        corrections.push(timed.trajectory.duration_s() / timed.shortest_solution_duration_s);
         if robot.chain.dof() == 7 {
             let options =
                 TimingOptions { limits: JointLimits::Acceleration, torque: false, ..TimingOptions::default() };

@@ -18,6 +18,8 @@ pub struct Motion {
     pub trajectory: Arc<JointTrajectory>,
     /// When its time is 0, in s on the clock of [`Session::handle`](crate::Session::handle); a whole number of nanoseconds.
     pub starts_at_s: f64,
+    /// When what was planned begins, in s from the trajectory's start: there it takes over from the motion before. 0 from rest.
+    pub takes_over_s: f64,
 }
 
 /// Where a new trajectory takes over from a running one.
@@ -44,7 +46,7 @@ impl Handover {
 impl Motion {
     /// The motion along a trajectory from rest, from `now_s` on.
     pub(crate) fn from_rest(trajectory: JointTrajectory, now_s: f64) -> Self {
-        Self { trajectory: Arc::new(trajectory), starts_at_s: (now_s * 1e9).round() * 1e-9 }
+        Self { trajectory: Arc::new(trajectory), starts_at_s: (now_s * 1e9).round() * 1e-9, takes_over_s: 0.0 }
     }
 
     pub(crate) fn ends_at_s(&self) -> f64 {
@@ -63,9 +65,9 @@ impl Motion {
         let passed = |point: &&JointPoint| point.time_s <= at_s && self.starts_at_s + point.time_s <= now_s;
         let from_s = self.trajectory.points.iter().rfind(passed).map_or(0.0, |point| point.time_s);
         // Both are times of points, whole nanoseconds; so is their difference but for rounding.
-        let ahead_s = ((at_s - from_s) * 1e9).round() * 1e-9;
-        let trajectory = self.trajectory.after(from_s).switched(ahead_s, next);
-        Self { trajectory: Arc::new(trajectory), starts_at_s: self.starts_at_s + from_s }
+        let takes_over_s = ((at_s - from_s) * 1e9).round() * 1e-9;
+        let trajectory = self.trajectory.after(from_s).switched(takes_over_s, next);
+        Self { trajectory: Arc::new(trajectory), starts_at_s: self.starts_at_s + from_s, takes_over_s }
     }
 
     /// The smooth stop of this motion, as soon as a controller can hear of it. `None` where it ends as soon by itself.

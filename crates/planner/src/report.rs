@@ -4,6 +4,7 @@ use manipulator::{Audit, PathReport};
 use reorder::Ordering;
 use serde::Serialize;
 
+use crate::motion::Motion;
 use crate::pipeline::Plan;
 use crate::refusal::Refusal;
 
@@ -21,16 +22,19 @@ pub struct Report {
     pub refusal: Option<String>,
 }
 
-/// A plan in figures.
+/// A plan in figures. Times count from the start of the trajectory that is published (in ROS its `header.stamp`), which on a hand-over
+/// begins with what is left of the motion before.
 #[derive(Debug, Clone, Serialize)]
 pub struct PlanReport {
     /// Name of the robot.
     pub robot: String,
-    /// Duration of the whole trajectory in s.
+    /// Duration of the whole published trajectory in s.
     pub duration_s: f64,
-    /// Duration of the move to the first pose in s.
+    /// When the plan takes over from the motion before; 0 from rest.
+    pub takes_over_s: f64,
+    /// Duration of the move from there to the first pose in s.
     pub approach_s: f64,
-    /// Number of trajectory points.
+    /// Number of its points.
     pub points: usize,
     /// Greatest distance of the planned tool from an input pose in m.
     pub pose_error_max_m: f64,
@@ -38,7 +42,7 @@ pub struct PlanReport {
     pub pose_error_max_rad: f64,
     /// When each input pose is passed, by input index, in s.
     pub pose_times_s: Vec<f64>,
-    /// The limits.
+    /// The limits, of what was planned: on a hand-over from there on. What is executed before was audited with the plan before.
     pub audit: Audit,
     /// Least manipulability, least singular value and least margin to a position limit along the joint path, with their places along
     /// the recovered order.
@@ -46,24 +50,29 @@ pub struct PlanReport {
 }
 
 impl Report {
-    /// The report of an outcome.
-    pub fn of(robot: &str, outcome: &Result<Plan, Refusal>) -> Self {
+    /// The report of a plan or a refusal, and of the motion that is published for it; without one, of the plan's own trajectory.
+    pub fn of(robot: &str, outcome: &Result<Plan, Refusal>, motion: Option<&Motion>) -> Self {
         match outcome {
-            Ok(plan) => Self {
-                ordering: Some(plan.ordering.clone()),
-                plan: Some(PlanReport {
-                    robot: robot.to_owned(),
-                    duration_s: plan.trajectory.duration_s(),
-                    approach_s: plan.approach_s,
-                    points: plan.trajectory.points.len(),
-                    pose_error_max_m: plan.pose_error_max_m,
-                    pose_error_max_rad: plan.pose_error_max_rad,
-                    pose_times_s: plan.pose_times_s.clone(),
-                    audit: plan.audit,
-                    path: plan.path_report.clone(),
-                }),
-                refusal: None,
-            },
+            Ok(plan) => {
+                let takes_over_s = motion.map_or(0.0, |motion| motion.takes_over_s);
+                let published = motion.map_or(&plan.trajectory, |motion| &motion.trajectory);
+                Self {
+                    ordering: Some(plan.ordering.clone()),
+                    plan: Some(PlanReport {
+                        robot: robot.to_owned(),
+                        duration_s: published.duration_s(),
+                        takes_over_s,
+                        approach_s: plan.approach_s,
+                        points: published.points.len(),
+                        pose_error_max_m: plan.pose_error_max_m,
+                        pose_error_max_rad: plan.pose_error_max_rad,
+                        pose_times_s: plan.pose_times_s.iter().map(|time_s| takes_over_s + time_s).collect(),
+                        audit: plan.audit,
+                        path: plan.path_report.clone(),
+                    }),
+                    refusal: None,
+                }
+            }
             Err(refusal) => {
                 Self { ordering: refusal.ordering().cloned(), plan: None, refusal: Some(refusal.to_string()) }
             }

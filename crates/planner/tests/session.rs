@@ -72,7 +72,8 @@ fn poses_are_planned_and_published() {
     let plan = outcome.result.as_ref().unwrap();
     // 7i mod 10 = k has the solution i = 3k mod 10.
     assert_eq!(plan.ordering.order, [0, 3, 6, 9, 2, 5, 8, 1, 4, 7]);
-    let report: serde_json::Value = serde_json::from_str(&Report::of("ur5e", &outcome.result).to_json()).unwrap();
+    let report: serde_json::Value =
+        serde_json::from_str(&Report::of("ur5e", &outcome.result, outcome.motion.as_ref()).to_json()).unwrap();
     for key in ["n", "order", "topology", "method", "verdict", "certificate", "doubts", "plan"] {
         assert!(!report[key].is_null(), "{key}");
     }
@@ -246,7 +247,7 @@ fn bad_poses_are_refused_by_index_and_displace_the_ones_before() {
     assert_eq!(refusal.to_string(), "pose 4: the quaternion is zero, so there is no orientation");
     // The plan that was under way belongs to poses that are no longer wanted.
     assert!(session.handle(NOW_S, Input::Finished(job.run())).is_empty());
-    let report = Report::of("ur5e", &Err(refusal)).to_json();
+    let report = Report::of("ur5e", &Err(refusal), None).to_json();
     assert_eq!(report, r#"{"refusal":"pose 4: the quaternion is zero, so there is no orientation"}"#);
     assert_eq!(kinds(&session.handle(NOW_S, Input::Replan)), ["reply false"]);
 }

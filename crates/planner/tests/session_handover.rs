@@ -7,7 +7,7 @@ use planner::manipulator::Robot;
 use planner::manipulator::nalgebra::DVector;
 use planner::manipulator::{TimingOptions, audit_from};
 use planner::se3_geom::xyzw_from_rotation;
-use planner::{Config, Input, Motion, OnRefusal, RawPose, Refusal, Session};
+use planner::{Config, Input, Motion, OnRefusal, RawPose, Refusal, Report, Session};
 use support::outputs::{only_job, only_outcome};
 
 const HOME: [f64; 6] = [-1.57, -1.57, 1.57, -1.57, -1.57, 0.0];
@@ -85,6 +85,29 @@ fn new_poses_take_over_a_lead_ahead_in_exactly_the_state_of_that_time() {
     let began = running.trajectory.state_at(((motion.starts_at_s - BEGAN_S) * 1e9).round() * 1e-9);
     assert!(audit_from(session.robot(), &motion.trajectory, &began).limits_ok);
     assert_eq!((session.counters().planned, session.counters().late), (2, 0));
+}
+
+/// Report and message go out together: a reader looks poses up in the trajectory of the message.
+#[test]
+fn the_report_counts_from_the_start_of_the_published_trajectory() {
+    let (mut session, running) = under_way(quick());
+    let asked_s = BEGAN_S + 0.203;
+    on_track(&mut session, &running, asked_s);
+    let job = only_job(session.handle(asked_s, line(0.15)));
+    let outcome = only_outcome(session.handle(asked_s + 0.1, Input::Finished(job.run())));
+    let motion = outcome.motion.as_ref().unwrap();
+    let report = Report::of("ur5e", &outcome.result, Some(motion)).plan.unwrap();
+    assert_eq!((report.duration_s, report.points), (motion.trajectory.duration_s(), motion.trajectory.points.len()));
+    // Planning took 0.1 s of the lead of 0.4 s; points are 10 ms apart.
+    assert!((0.28..0.33).contains(&report.takes_over_s), "{}", report.takes_over_s);
+    let handed_over = motion.trajectory.state_at(report.takes_over_s);
+    assert_eq!(handed_over, outcome.result.as_ref().unwrap().trajectory.points[0]);
+    for (pose, &time_s) in outcome.request.poses.iter().zip(&report.pose_times_s) {
+        let tool = session.robot().chain.forward(&motion.trajectory.at(time_s)[0]);
+        let error_m = (tool.translation.vector - pose.translation.vector).norm();
+        // The tolerance of the path, and as much again between published points; poses lie 0.02 m apart.
+        assert!(error_m < 2e-4, "{error_m} m from a pose at {time_s} s");
+    }
 }
 
 /// Planning that outlasts the lead is repeated with a longer one; at the end of the trajectory nothing can be late any more.

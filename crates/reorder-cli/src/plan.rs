@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(path) => write_whole(path, &trajectory_csv(&plan.trajectory)),
     }?;
     if let Some(path) = &arguments.report {
-        write_whole(path, &(Report::of(&robot.name, &Ok(plan.clone())).to_json() + "\n"))?;
+        write_whole(path, &(Report::of(&robot.name, &Ok(plan.clone()), None).to_json() + "\n"))?;
     }
     let ratio = &plan.audit.max_ratio;
     eprintln!(

@@ -58,7 +58,7 @@ impl Publishers {
         outcome: &Outcome,
         stamp_ns: impl FnOnce(&Motion) -> i64,
     ) -> r2r::Result<()> {
-        let report = Report::of(&robot.name, &outcome.result);
+        let report = Report::of(&robot.name, &outcome.result, outcome.motion.as_ref());
         self.report.publish(&r2r::std_msgs::msg::String { data: report.to_json() })?;
         match &outcome.result {
             Ok(plan) => {

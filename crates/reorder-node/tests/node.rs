@@ -166,6 +166,23 @@ fn nothing_is_planned_for_a_robot_that_nobody_has_heard_of() {
     assert!(said.starts_with("Refused: no joint state with all joints of ur5e has arrived"), "{said}");
 }
 
+/// A peer executes a trajectory, asks for other poses on the way, and finds no jump where the new trajectory takes over.
+#[test]
+fn new_poses_take_over_from_the_trajectory_under_execution() {
+    let domain = Domain(67);
+    // Slow, so that much of the motion is left even where planning takes long.
+    let [scale, handover] = ["timing.acceleration_scale:=0.05", "handover:=true"];
+    let node = domain.node(&[&PARAMETERS[..], &["-p", handover, "-p", scale]].concat());
+    let robot = format!("{ROOT}/config/robots/ur5e");
+    let [first, second] = ["lasa_sine", "lasa_angle"].map(|shape| format!("{ROOT}/tests/data/{shape}"));
+    let (limits, urdf) = (format!("{robot}.yaml"), format!("{robot}.urdf"));
+    let (judged, said) = domain.peer("take_over.py", &[&first, &second, "--limits", &limits, "--urdf", &urdf]).finish();
+    assert!(judged.success(), "{said}");
+    node.signal("-INT");
+    let (ended, log) = node.finish();
+    assert!(ended.success(), "{ended}: {log}");
+}
+
 #[test]
 fn replan_and_clear_answer() {
     let domain = Domain(64);

@@ -17,10 +17,12 @@ pub struct Twist {
 
 impl Twist {
     /// A twist from its two parts.
+    #[inline]
     pub fn new(linear: Vector3<f64>, angular: Vector3<f64>) -> Self {
         Self { linear, angular }
     }
     /// No motion.
+    #[inline]
     pub fn zero() -> Self {
         Self::default()
     }
@@ -37,24 +39,28 @@ impl Twist {
 
 impl Add for Twist {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self::new(self.linear + other.linear, self.angular + other.angular)
     }
 }
 impl Sub for Twist {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         Self::new(self.linear - other.linear, self.angular - other.angular)
     }
 }
 impl Neg for Twist {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Self::new(-self.linear, -self.angular)
     }
 }
 impl Mul<f64> for Twist {
     type Output = Self;
+    #[inline]
     fn mul(self, k: f64) -> Self {
         Self::new(self.linear * k, self.angular * k)
     }
