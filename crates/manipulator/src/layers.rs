@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use crate::continuation::{Sample, Stopped, Tracker};
 use crate::ik::{IkOptions, descend};
-use crate::posture::{discomfort, first_violation, self_motions, separation, unwound};
+use crate::posture::{discomfort, first_violation, self_motions, separation, turns_freely, unwound};
 use crate::robot::Robot;
 use crate::route::{Link, cheapest};
 use crate::stations::Station;
@@ -183,11 +183,16 @@ fn continued(
     (next, links)
 }
 
-/// The samples carried on to parameter `to` with least motion, and what of their self-motions is not among them.
+/// The samples carried on to parameter `to` with least motion, and what of their self-motions is not among them. One that would pass
+/// a limit is held at it.
 fn carried(tracker: &Tracker<'_>, samples: &[Sample], to: f64, stops: &mut Vec<Stopped>) -> Vec<Sample> {
     let mut next: Vec<Sample> = Vec::new();
     for sample in samples {
-        match tracker.sample(to, &sample.q) {
+        let there = tracker.sample(to, &sample.q).or_else(|error| {
+            let held = held_within_limits(tracker, to, &sample.q).ok_or(error)?;
+            tracker.sample(to, &held)
+        });
+        match there {
             Ok(there) if is_apart(tracker.robot, &next, &there.q) => next.push(there),
             Ok(_) => {}
             Err(error) => stops.push(tracker.stopped(sample.s, error)),
@@ -195,6 +200,16 @@ fn carried(tracker: &Tracker<'_>, samples: &[Sample], to: f64, stops: &mut Vec<S
     }
     spread(tracker, to, &mut next);
     next
+}
+
+/// A configuration of the tool's pose next to `q` whose joints go no farther than their limits, if there is one.
+fn held_within_limits(tracker: &Tracker<'_>, s: f64, q: &DVector<f64>) -> Option<DVector<f64>> {
+    let robot = tracker.robot;
+    let mut limits = robot.limits.clone();
+    for joint in (0..q.len()).filter(|&joint| turns_freely(robot, joint)) {
+        (limits.lower[joint], limits.upper[joint]) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    descend(&robot.chain, &tracker.curve.pose(s), q, &IkOptions::default(), Some(&limits)).ok()
 }
 
 fn is_apart(robot: &Robot, samples: &[Sample], q: &DVector<f64>) -> bool {
