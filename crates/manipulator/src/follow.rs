@@ -14,7 +14,7 @@ use crate::posture_spline::posture_through;
 use crate::reach::out_of_reach;
 use crate::relaxation::relax;
 use crate::robot::Robot;
-use crate::stations::{Station, stations};
+use crate::stations::{CLOSE_SPACING, SPACING, Station, stations};
 use crate::tolerance::spline_within_tolerance;
 
 /// How closely the joints follow the curve.
@@ -95,13 +95,18 @@ pub fn follow(
     let reference = start.unwrap_or(&robot.preferred);
     robot.check_configuration("the start configuration", reference)?;
     let tracker = Tracker { robot, curve, least_singular_value: options.least_singular_value, posture: None };
-    let request = Request { tracker, stations: stations(curve), reference, options };
-    request.path().map_err(|stopped| match out_of_reach(robot, curve, reference) {
+    let request = Request { tracker, stations: stations(curve, SPACING), reference, options };
+    let again = |stopped| {
+        let closer = Request { stations: stations(curve, CLOSE_SPACING), ..request.clone() };
+        if robot.chain.dof() > 6 { closer.path() } else { Err(stopped) }
+    };
+    request.path().or_else(again).map_err(|stopped| match out_of_reach(robot, curve, reference) {
         Some(misses) => ManipulatorError::Unreachable(misses),
         None => stopped.error.at_pose(stopped.pose),
     })
 }
 
+#[derive(Clone)]
 struct Request<'a> {
     tracker: Tracker<'a>,
     stations: Vec<Station>,
@@ -137,14 +142,25 @@ impl Request<'_> {
                 }
             }
         }
-        if redundant && !tracker.curve.is_closed() {
-            for q in layers.first_by_approach().into_iter().take(LEAST_MOTION_STARTS) {
-                match self.through(tracker, tracker.track(q)) {
-                    Ok(path) => return Ok(path),
-                    Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => stops.push(stopped),
+        // Between stations a link may have stepped over a singularity: pose by pose shows where a branch truly ends.
+        let (most, closed) = (if redundant { LEAST_MOTION_STARTS } else { usize::MAX }, tracker.curve.is_closed());
+        let mut ends = Vec::new();
+        for q in layers.first_by_approach().into_iter().take(if redundant && closed { 0 } else { most }) {
+            let samples = match tracker.track(q) {
+                Ok(samples) if closed && separation(robot, &samples[0].q, &samples[samples.len() - 1].q) > SAME => {
+                    continue;
                 }
+                samples => samples,
+            };
+            match self.through(tracker, samples) {
+                Ok(path) => return Ok(path),
+                Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => ends.push(stopped),
             }
         }
+        if redundant || ends.is_empty() {
+            ends.append(&mut stops);
+        }
+        let mut stops = ends;
         if let Some(route) = one_way.filter(|_| tracker.curve.is_closed()) {
             stops.extend(self.not_cyclic(&route));
         }
