@@ -14,7 +14,7 @@ use crate::posture_spline::posture_through;
 use crate::reach::out_of_reach;
 use crate::relaxation::relax;
 use crate::robot::Robot;
-use crate::stations::{CLOSE_SPACING, SPACING, Station, stations};
+use crate::stations::{Station, stations};
 use crate::tolerance::spline_within_tolerance;
 
 /// How closely the joints follow the curve.
@@ -64,6 +64,9 @@ impl PathOptions {
 const MAX_ROUTES: usize = 48;
 /// Starts from which a redundant arm that found no route is led with least motion from sample to sample.
 const LEAST_MOTION_STARTS: usize = 8;
+/// How many times more stations a redundant arm without a route gets: narrow ways between limits and singularities show to close ones
+/// only.
+const CLOSER: f64 = 4.0;
 /// Nearer than this to the first configuration, in rad or m, the robot stands there already.
 const STANDS_THERE: f64 = 1e-3;
 
@@ -95,14 +98,14 @@ pub fn follow(
     let reference = start.unwrap_or(&robot.preferred);
     robot.check_configuration("the start configuration", reference)?;
     let tracker = Tracker { robot, curve, least_singular_value: options.least_singular_value, posture: None };
-    let request = Request { tracker, stations: stations(curve, SPACING), reference, options };
-    let again = |stopped| {
-        let closer = Request { stations: stations(curve, CLOSE_SPACING), ..request.clone() };
-        if robot.chain.dof() > 6 { closer.path() } else { Err(stopped) }
-    };
-    request.path().or_else(again).map_err(|stopped| match out_of_reach(robot, curve, reference) {
-        Some(misses) => ManipulatorError::Unreachable(misses),
-        None => stopped.error.at_pose(stopped.pose),
+    let request = Request { tracker, stations: stations(curve, 1.0), reference, options };
+    request.path().or_else(|stopped| {
+        if let Some(misses) = out_of_reach(robot, curve, reference) {
+            return Err(ManipulatorError::Unreachable(misses));
+        }
+        let closer = || Request { stations: stations(curve, CLOSER), ..request.clone() }.path();
+        let last = if robot.chain.dof() > 6 { closer() } else { Err(stopped) };
+        last.map_err(|stopped| stopped.error.at_pose(stopped.pose))
     })
 }
 
@@ -142,27 +145,25 @@ impl Request<'_> {
                 }
             }
         }
-        // Between stations a link may have stepped over a singularity: pose by pose shows where a branch truly ends.
-        let (most, closed) = (if redundant { LEAST_MOTION_STARTS } else { usize::MAX }, tracker.curve.is_closed());
-        let mut ends = Vec::new();
-        for q in layers.first_by_approach().into_iter().take(if redundant && closed { 0 } else { most }) {
-            let samples = match tracker.track(q) {
-                Ok(samples) if closed && separation(robot, &samples[0].q, &samples[samples.len() - 1].q) > SAME => {
-                    continue;
+        let closed = tracker.curve.is_closed();
+        if redundant && closed {
+            stops.extend(
+                one_way.and_then(|route| self.not_cyclic(route.configurations.first()?, route.configurations.last()?)),
+            );
+        } else {
+            let most = if redundant { LEAST_MOTION_STARTS } else { usize::MAX };
+            let mut ends = Vec::new();
+            for q in layers.first_by_approach().into_iter().take(most) {
+                match self.pose_by_pose(q) {
+                    Ok(path) => return Ok(path),
+                    Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => ends.push(stopped),
                 }
-                samples => samples,
-            };
-            match self.through(tracker, samples) {
-                Ok(path) => return Ok(path),
-                Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => ends.push(stopped),
             }
-        }
-        if redundant || ends.is_empty() {
-            ends.append(&mut stops);
-        }
-        let mut stops = ends;
-        if let Some(route) = one_way.filter(|_| tracker.curve.is_closed()) {
-            stops.extend(self.not_cyclic(&route));
+            // A link between stations may have stepped over a singularity: without redundancy these alone are where the branches end.
+            if !redundant && !ends.is_empty() {
+                stops.clear();
+            }
+            stops.append(&mut ends);
         }
         let farthest = stops.into_iter().max_by(|a, b| a.parameter.total_cmp(&b.parameter));
         // Without any configuration at the first pose there was an error before.
@@ -182,6 +183,16 @@ impl Request<'_> {
         self.through(&tracker, samples)
     }
 
+    /// The path with least motion from pose to pose, from a configuration at the first.
+    fn pose_by_pose(&self, first: &DVector<f64>) -> std::result::Result<JointPath, NoPath> {
+        let samples = self.tracker.track(first).map_err(NoPath::Stopped)?;
+        let open = samples.last().filter(|_| self.tracker.curve.is_closed());
+        if let Some(stopped) = open.and_then(|last| self.not_cyclic(&samples[0].q, &last.q)) {
+            return Err(NoPath::Stopped(stopped));
+        }
+        self.through(&self.tracker, Ok(samples))
+    }
+
     fn through(
         &self,
         tracker: &Tracker<'_>,
@@ -198,9 +209,8 @@ impl Request<'_> {
     }
 
     /// The arm comes back in another configuration than it set out in.
-    fn not_cyclic(&self, route: &Route) -> Option<Stopped> {
+    fn not_cyclic(&self, first: &DVector<f64>, last: &DVector<f64>) -> Option<Stopped> {
         let robot = self.tracker.robot;
-        let (first, last) = (route.configurations.first()?, route.configurations.last()?);
         if separation(robot, first, last) < SAME {
             return None;
         }
