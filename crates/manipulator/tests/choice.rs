@@ -6,9 +6,9 @@ mod support;
 
 use std::f64::consts::{PI, TAU};
 
-use manipulator::nalgebra::DVector;
+use manipulator::nalgebra::{DVector, Vector3};
 use manipulator::{JointPath, ManipulatorError, PathOptions, PathReport, Robot, follow};
-use se3_geom::{Manifold, Pose, PoseSpline, Se3, So3};
+use se3_geom::{Ends, LieGroup, Manifold, Pose, PoseSpline, Se3, So3, So3Group, centripetal_knots};
 use support::curves::{spline, writing};
 use support::ur5e;
 
@@ -213,6 +213,49 @@ fn at_limit_path_is_followed_within_the_limits() {
             assert!(far, "{error}");
         }
     }
+}
+
+/// With its fifth joint all but fixed the Panda has one self-motion less: round this curve it comes back with another wrist, and no
+/// self-motion within the limits leads from the one to the other.
+#[test]
+fn seven_joints_that_cannot_close_a_closed_curve_are_refused_as_not_cyclic() {
+    let mut robot = Robot::shipped("panda").unwrap();
+    let begin = DVector::from_column_slice(&[
+        0.4182672314221718,
+        0.8239441081533898,
+        1.123972288458519,
+        -2.2264053285867025,
+        0.05403976327198956,
+        0.7697887037420394,
+        1.734204416048612,
+    ]);
+    for joint in 0..7 {
+        let (middle, half) = if joint == 4 { (begin[joint], 0.05) } else { (0.0, 6.0) };
+        (robot.limits.lower[joint], robot.limits.upper[joint]) = (middle - half, middle + half);
+    }
+    let centre = robot.chain.forward(&begin);
+    let phases = [2.3748, 2.4368, 2.7431, 5.9847, 2.5205, 5.568];
+    let poses: Vec<Pose> = (0..40)
+        .map(|i| {
+            let turn = TAU * f64::from(i) / 40.0;
+            let way = phases.map(|phase| (turn + phase).sin() - phase.sin());
+            let place = centre.translation.vector + Vector3::new(way[0], way[1], way[2]) * 0.1527;
+            Pose::from_parts(
+                place.into(),
+                centre.rotation * So3Group::exp(Vector3::new(way[3], way[4], way[5]) * 0.5938),
+            )
+        })
+        .collect();
+    let round: Vec<Pose> = poses.iter().chain(poses.first()).copied().collect();
+    let curve = PoseSpline::through(&poses, &centripetal_knots(&Se3::default(), &round), Ends::Periodic).unwrap();
+    let options = PathOptions::default();
+    let error = follow(&robot, &curve, Some(&begin), &options).unwrap_err();
+    let ManipulatorError::NotCyclic { joint, from, to } = &error else { panic!("{error}") };
+    let whole_turns = ((to - from) / TAU).round() * TAU;
+    assert!((to - from - whole_turns).abs() > 1e-3 && error.to_string().contains(joint), "{error}");
+    // Open, the same curve is followed.
+    let open = PoseSpline::through(&poses, &centripetal_knots(&Se3::default(), &poses), Ends::Natural).unwrap();
+    assert_sound(&robot, &open, &follow(&robot, &open, Some(&begin), &options).unwrap(), &options);
 }
 
 /// A part of the poses is lifted beyond the length of the stretched arm: all of them are named, each with the distance.
