@@ -145,26 +145,27 @@ impl Request<'_> {
                 }
             }
         }
-        let closed = tracker.curve.is_closed();
-        if redundant && closed {
-            stops.extend(
-                one_way.and_then(|route| self.not_cyclic(route.configurations.first()?, route.configurations.last()?)),
-            );
-        } else {
-            let most = if redundant { LEAST_MOTION_STARTS } else { usize::MAX };
-            let mut ends = Vec::new();
-            for q in layers.first_by_approach().into_iter().take(most) {
-                match self.pose_by_pose(q) {
-                    Ok(path) => return Ok(path),
-                    Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => ends.push(stopped),
-                }
-            }
-            // A link between stations may have stepped over a singularity: without redundancy these alone are where the branches end.
-            if !redundant && !ends.is_empty() {
-                stops.clear();
-            }
-            stops.append(&mut ends);
+        if redundant && tracker.curve.is_closed() {
+            let ends = one_way.as_ref().and_then(|route| route.configurations.first().zip(route.configurations.last()));
+            stops.extend(ends.and_then(|(first, last)| self.not_cyclic(first, last)));
         }
+        let most = match redundant {
+            false => usize::MAX,
+            true if tracker.curve.is_closed() && !stops.is_empty() => 0,
+            true => LEAST_MOTION_STARTS,
+        };
+        let mut ends = Vec::new();
+        for q in layers.first_by_approach().into_iter().take(most) {
+            match self.pose_by_pose(q) {
+                Ok(path) => return Ok(path),
+                Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => ends.push(stopped),
+            }
+        }
+        // A link between stations may have stepped over a singularity: without redundancy these alone are where the branches end.
+        if !redundant && !ends.is_empty() {
+            stops.clear();
+        }
+        stops.append(&mut ends);
         let farthest = stops.into_iter().max_by(|a, b| a.parameter.total_cmp(&b.parameter));
         // Without any configuration at the first pose there was an error before.
         Err(farthest.unwrap_or_else(|| tracker.stopped(begin, ManipulatorError::NonFinite { what: "the curve" })))
