@@ -98,14 +98,17 @@ pub fn follow(
     let reference = start.unwrap_or(&robot.preferred);
     robot.check_configuration("the start configuration", reference)?;
     let tracker = Tracker { robot, curve, least_singular_value: options.least_singular_value, posture: None };
-    let request = Request { tracker, stations: stations(curve, 1.0), reference, options };
+    let request = Request { tracker, stations: stations(curve, 1.0), afresh: false, reference, options };
     request.path().or_else(|stopped| {
         if let Some(misses) = out_of_reach(robot, curve, reference) {
             return Err(ManipulatorError::Unreachable(misses));
         }
-        let closer = || Request { stations: stations(curve, CLOSER), ..request.clone() }.path();
-        let last = if robot.chain.dof() > 6 { closer() } else { Err(stopped) };
-        last.map_err(|stopped| stopped.error.at_pose(stopped.pose))
+        let thorough = || Request { stations: stations(curve, CLOSER), afresh: true, ..request.clone() }.path();
+        let last = if robot.chain.dof() > 6 { thorough() } else { Err(stopped.clone()) };
+        last.map_err(|last| {
+            let farther = if last.parameter > stopped.parameter { last } else { stopped };
+            farther.error.at_pose(farther.pose)
+        })
     })
 }
 
@@ -113,6 +116,8 @@ pub fn follow(
 struct Request<'a> {
     tracker: Tracker<'a>,
     stations: Vec<Station>,
+    /// Whether a redundant arm's configurations are looked for anew at every station: some appear only on the way.
+    afresh: bool,
     reference: &'a DVector<f64>,
     options: &'a PathOptions,
 }
@@ -128,7 +133,11 @@ impl Request<'_> {
             first.truncate(self.options.max_branches);
         }
         let mut stops = Vec::new();
-        let mut layers = Layers::build(tracker, &self.stations, first, self.reference, &mut stops);
+        let mut layers = Layers::build(tracker, &self.stations, first, self.reference, self.afresh, &mut stops);
+        if self.afresh {
+            // What was found anew may not be joined to the start: where it ends says nothing.
+            stops.clear();
+        }
         let one_way = layers.cheapest_open(robot);
         for _ in 0..MAX_ROUTES {
             let Some(route) = layers.cheapest(robot) else { break };

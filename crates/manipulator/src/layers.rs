@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use crate::branches::first_configurations;
 use crate::continuation::{Sample, Stopped, Tracker};
 use crate::ik::{IkOptions, descend};
 use crate::posture::{discomfort, first_violation, self_motions, separation, turns_freely, unwound};
@@ -43,6 +44,7 @@ impl Layers {
         stations: &[Station],
         first: Vec<DVector<f64>>,
         reference: &DVector<f64>,
+        afresh: bool,
         stops: &mut Vec<Stopped>,
     ) -> Self {
         let robot = tracker.robot;
@@ -73,7 +75,7 @@ impl Layers {
                     .filter_map(|q| tracker.sample(pair[1].s, q).ok())
                     .collect()
             } else if redundant {
-                carried(tracker, &samples, pair[1].s, stops)
+                carried(tracker, &samples, pair[1].s, afresh, stops)
             } else {
                 Vec::new()
             };
@@ -184,8 +186,9 @@ fn continued(
 }
 
 /// The samples carried on to parameter `to` with least motion, and what of their self-motions is not among them. One that would pass
-/// a limit is held at it.
-fn carried(tracker: &Tracker<'_>, samples: &[Sample], to: f64, stops: &mut Vec<Stopped>) -> Vec<Sample> {
+/// a limit is held at it. With `afresh` configurations found from seeds all over the joints' ranges come to these: what limits part
+/// from all that was before.
+fn carried(tracker: &Tracker<'_>, samples: &[Sample], to: f64, afresh: bool, stops: &mut Vec<Stopped>) -> Vec<Sample> {
     let mut next: Vec<Sample> = Vec::new();
     for sample in samples {
         let there = tracker.sample(to, &sample.q).or_else(|error| {
@@ -196,6 +199,16 @@ fn carried(tracker: &Tracker<'_>, samples: &[Sample], to: f64, stops: &mut Vec<S
             Ok(there) if is_apart(tracker.robot, &next, &there.q) => next.push(there),
             Ok(_) => {}
             Err(error) => stops.push(tracker.stopped(sample.s, error)),
+        }
+    }
+    if afresh {
+        let seen = first_configurations(tracker.robot, &tracker.curve.pose(to), &tracker.robot.preferred);
+        for q in seen.unwrap_or_default() {
+            if let Ok(sample) = tracker.sample(to, &q)
+                && is_apart(tracker.robot, &next, &sample.q)
+            {
+                next.push(sample);
+            }
         }
     }
     spread(tracker, to, &mut next);
