@@ -64,6 +64,9 @@ impl PathOptions {
 const MAX_ROUTES: usize = 48;
 /// Starts from which a redundant arm that found no route is led with least motion from sample to sample.
 const LEAST_MOTION_STARTS: usize = 8;
+/// How many times more stations a redundant arm without a route gets: narrow ways between limits and singularities show to close ones
+/// only.
+const CLOSER: f64 = 4.0;
 /// Nearer than this to the first configuration, in rad or m, the robot stands there already.
 const STANDS_THERE: f64 = 1e-3;
 
@@ -95,16 +98,26 @@ pub fn follow(
     let reference = start.unwrap_or(&robot.preferred);
     robot.check_configuration("the start configuration", reference)?;
     let tracker = Tracker { robot, curve, least_singular_value: options.least_singular_value, posture: None };
-    let request = Request { tracker, stations: stations(curve), reference, options };
-    request.path().map_err(|stopped| match out_of_reach(robot, curve, reference) {
-        Some(misses) => ManipulatorError::Unreachable(misses),
-        None => stopped.error.at_pose(stopped.pose),
+    let request = Request { tracker, stations: stations(curve, 1.0), afresh: false, reference, options };
+    request.path().or_else(|stopped| {
+        if let Some(misses) = out_of_reach(robot, curve, reference) {
+            return Err(ManipulatorError::Unreachable(misses));
+        }
+        let thorough = || Request { stations: stations(curve, CLOSER), afresh: true, ..request.clone() }.path();
+        let last = if robot.chain.dof() > 6 { thorough() } else { Err(stopped.clone()) };
+        last.map_err(|last| {
+            let farther = if last.parameter > stopped.parameter { last } else { stopped };
+            farther.error.at_pose(farther.pose)
+        })
     })
 }
 
+#[derive(Clone)]
 struct Request<'a> {
     tracker: Tracker<'a>,
     stations: Vec<Station>,
+    /// Whether a redundant arm's configurations are looked for anew at every station: some appear only on the way.
+    afresh: bool,
     reference: &'a DVector<f64>,
     options: &'a PathOptions,
 }
@@ -120,7 +133,11 @@ impl Request<'_> {
             first.truncate(self.options.max_branches);
         }
         let mut stops = Vec::new();
-        let mut layers = Layers::build(tracker, &self.stations, first, self.reference, &mut stops);
+        let mut layers = Layers::build(tracker, &self.stations, first, self.reference, self.afresh, &mut stops);
+        if self.afresh {
+            // What was found anew may not be joined to the start: where it ends says nothing.
+            stops.clear();
+        }
         let one_way = layers.cheapest_open(robot);
         for _ in 0..MAX_ROUTES {
             let Some(route) = layers.cheapest(robot) else { break };
@@ -137,17 +154,27 @@ impl Request<'_> {
                 }
             }
         }
-        if redundant && !tracker.curve.is_closed() {
-            for q in layers.first_by_approach().into_iter().take(LEAST_MOTION_STARTS) {
-                match self.through(tracker, tracker.track(q)) {
-                    Ok(path) => return Ok(path),
-                    Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => stops.push(stopped),
-                }
+        if redundant && tracker.curve.is_closed() {
+            let ends = one_way.as_ref().and_then(|route| route.configurations.first().zip(route.configurations.last()));
+            stops.extend(ends.and_then(|(first, last)| self.not_cyclic(first, last)));
+        }
+        let most = match redundant {
+            false => usize::MAX,
+            true if tracker.curve.is_closed() && !stops.is_empty() => 0,
+            true => LEAST_MOTION_STARTS,
+        };
+        let mut ends = Vec::new();
+        for q in layers.first_by_approach().into_iter().take(most) {
+            match self.pose_by_pose(q) {
+                Ok(path) => return Ok(path),
+                Err(NoPath::Stopped(stopped) | NoPath::WoundUp(stopped)) => ends.push(stopped),
             }
         }
-        if let Some(route) = one_way.filter(|_| tracker.curve.is_closed()) {
-            stops.extend(self.not_cyclic(&route));
+        // A link between stations may have stepped over a singularity: without redundancy these alone are where the branches end.
+        if !redundant && !ends.is_empty() {
+            stops.clear();
         }
+        stops.append(&mut ends);
         let farthest = stops.into_iter().max_by(|a, b| a.parameter.total_cmp(&b.parameter));
         // Without any configuration at the first pose there was an error before.
         Err(farthest.unwrap_or_else(|| tracker.stopped(begin, ManipulatorError::NonFinite { what: "the curve" })))
@@ -166,6 +193,16 @@ impl Request<'_> {
         self.through(&tracker, samples)
     }
 
+    /// The path with least motion from pose to pose, from a configuration at the first.
+    fn pose_by_pose(&self, first: &DVector<f64>) -> std::result::Result<JointPath, NoPath> {
+        let samples = self.tracker.track(first).map_err(NoPath::Stopped)?;
+        let open = samples.last().filter(|_| self.tracker.curve.is_closed());
+        if let Some(stopped) = open.and_then(|last| self.not_cyclic(&samples[0].q, &last.q)) {
+            return Err(NoPath::Stopped(stopped));
+        }
+        self.through(&self.tracker, Ok(samples))
+    }
+
     fn through(
         &self,
         tracker: &Tracker<'_>,
@@ -182,9 +219,8 @@ impl Request<'_> {
     }
 
     /// The arm comes back in another configuration than it set out in.
-    fn not_cyclic(&self, route: &Route) -> Option<Stopped> {
+    fn not_cyclic(&self, first: &DVector<f64>, last: &DVector<f64>) -> Option<Stopped> {
         let robot = self.tracker.robot;
-        let (first, last) = (route.configurations.first()?, route.configurations.last()?);
         if separation(robot, first, last) < SAME {
             return None;
         }

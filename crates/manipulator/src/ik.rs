@@ -126,9 +126,14 @@ pub(crate) fn descend(
             return Ok(q);
         }
         // Damping in proportion to the squared error keeps the convergence quadratic (Sugihara 2011).
-        let Some(pull) = solve_gram(&jacobian, &twist, damping * twist.norm_squared()) else { break };
+        let lambda = damping * twist.norm_squared();
+        let Some(pull) = solve_gram(&jacobian, &twist, lambda) else { break };
         trial.copy_from(&q);
         trial.gemv_tr(1.0, &jacobian, &pull, 1.0);
+        if let Some(limits) = limits {
+            let Some(step) = step_of_free_joints(&q, &trial, &jacobian, &twist, lambda, limits) else { break };
+            trial = &q + step;
+        }
         clamp(&mut trial);
         let trial_twist = tool_error(&chain.forward_with_jacobian(&trial, &mut trial_jacobian), target);
         if trial_twist.norm_squared() < twist.norm_squared() {
@@ -145,6 +150,31 @@ pub(crate) fn descend(
     }
     let error = PoseError::of(&twist);
     if error.within(options.tolerance_m, options.tolerance_rad) { Ok(q) } else { Err(Miss { q, error }) }
+}
+
+/// The damped step of the joints that are not held by a limit: one at its limit that would pass it does not take part, until none
+/// is left that would. `wanted` is where all of them together would go.
+fn step_of_free_joints(
+    q: &DVector<f64>,
+    wanted: &DVector<f64>,
+    jacobian: &Matrix6xX<f64>,
+    twist: &Vector6<f64>,
+    lambda: f64,
+    limits: &Limits,
+) -> Option<DVector<f64>> {
+    let mut step = wanted - q;
+    let mut free = jacobian.clone();
+    for _ in 0..q.len() {
+        let held =
+            |j: &usize| (q[*j] <= limits.lower[*j] && step[*j] < 0.0) || (q[*j] >= limits.upper[*j] && step[*j] > 0.0);
+        let held: Vec<usize> = (0..q.len()).filter(held).collect();
+        if held.is_empty() {
+            break;
+        }
+        held.into_iter().for_each(|j| free.column_mut(j).fill(0.0));
+        step.gemv_tr(1.0, &free, &solve_gram(&free, twist, lambda)?, 0.0);
+    }
+    Some(step)
 }
 
 /// How exactly the self-motion that is left to a redundant arm is fixed, in rad or m.

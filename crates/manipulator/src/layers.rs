@@ -2,9 +2,10 @@
 
 use nalgebra::DVector;
 
+use crate::branches::first_configurations;
 use crate::continuation::{Sample, Stopped, Tracker};
 use crate::ik::{IkOptions, descend};
-use crate::posture::{discomfort, first_violation, self_motions, separation, unwound};
+use crate::posture::{discomfort, first_violation, self_motions, separation, turns_freely, unwound};
 use crate::robot::Robot;
 use crate::route::{Link, cheapest};
 use crate::stations::Station;
@@ -43,6 +44,7 @@ impl Layers {
         stations: &[Station],
         first: Vec<DVector<f64>>,
         reference: &DVector<f64>,
+        afresh: bool,
         stops: &mut Vec<Stopped>,
     ) -> Self {
         let robot = tracker.robot;
@@ -73,7 +75,7 @@ impl Layers {
                     .filter_map(|q| tracker.sample(pair[1].s, q).ok())
                     .collect()
             } else if redundant {
-                carried(tracker, &samples, pair[1].s, stops)
+                carried(tracker, &samples, pair[1].s, afresh, stops)
             } else {
                 Vec::new()
             };
@@ -183,18 +185,44 @@ fn continued(
     (next, links)
 }
 
-/// The samples carried on to parameter `to` with least motion, and what of their self-motions is not among them.
-fn carried(tracker: &Tracker<'_>, samples: &[Sample], to: f64, stops: &mut Vec<Stopped>) -> Vec<Sample> {
+/// The samples carried on to parameter `to` with least motion, and what of their self-motions is not among them. One that would pass
+/// a limit is held at it. With `afresh` configurations found from seeds all over the joints' ranges come to these: what limits part
+/// from all that was before.
+fn carried(tracker: &Tracker<'_>, samples: &[Sample], to: f64, afresh: bool, stops: &mut Vec<Stopped>) -> Vec<Sample> {
     let mut next: Vec<Sample> = Vec::new();
     for sample in samples {
-        match tracker.sample(to, &sample.q) {
+        let there = tracker.sample(to, &sample.q).or_else(|error| {
+            let held = held_within_limits(tracker, to, &sample.q).ok_or(error)?;
+            tracker.sample(to, &held)
+        });
+        match there {
             Ok(there) if is_apart(tracker.robot, &next, &there.q) => next.push(there),
             Ok(_) => {}
             Err(error) => stops.push(tracker.stopped(sample.s, error)),
         }
     }
+    if afresh {
+        let seen = first_configurations(tracker.robot, &tracker.curve.pose(to), &tracker.robot.preferred);
+        for q in seen.unwrap_or_default() {
+            if let Ok(sample) = tracker.sample(to, &q)
+                && is_apart(tracker.robot, &next, &sample.q)
+            {
+                next.push(sample);
+            }
+        }
+    }
     spread(tracker, to, &mut next);
     next
+}
+
+/// A configuration of the tool's pose next to `q` whose joints go no farther than their limits, if there is one.
+fn held_within_limits(tracker: &Tracker<'_>, s: f64, q: &DVector<f64>) -> Option<DVector<f64>> {
+    let robot = tracker.robot;
+    let mut limits = robot.limits.clone();
+    for joint in (0..q.len()).filter(|&joint| turns_freely(robot, joint)) {
+        (limits.lower[joint], limits.upper[joint]) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    descend(&robot.chain, &tracker.curve.pose(s), q, &IkOptions::default(), Some(&limits)).ok()
 }
 
 fn is_apart(robot: &Robot, samples: &[Sample], q: &DVector<f64>) -> bool {

@@ -152,10 +152,12 @@ impl Band<'_> {
         }
         for k in touched {
             let Some(row) = place(k) else { continue };
-            let here = self.discomfort(&configurations[k])?;
+            // Beyond a limit the discomfort still rises, so that a joint at its limit is drawn away from it.
+            let pull = |q: &DVector<f64>| discomfort(robot, q, &robot.chain.body_jacobian(q));
+            let here = pull(&configurations[k]);
             for (d, direction) in basis(k).column_iter().enumerate() {
-                let at = |h: f64| self.discomfort(&(&configurations[k] + direction * h));
-                let (Some(after), Some(before)) = (at(DIFFERENCE), at(-DIFFERENCE)) else { continue };
+                let at = |h: f64| pull(&(&configurations[k] + direction * h));
+                let (after, before) = (at(DIFFERENCE), at(-DIFFERENCE));
                 gradient[row + d] += self.weight(k) * (after - before) / (2.0 * DIFFERENCE);
                 let bend = (after + before - 2.0 * here) / DIFFERENCE.powi(2);
                 hessian[(row + d, row + d)] += self.weight(k) * bend.max(0.0);

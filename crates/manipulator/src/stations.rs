@@ -13,14 +13,15 @@ pub(crate) struct Station {
     pub(crate) length: f64,
 }
 
-/// Stations from the first parameter to the last, about evenly spaced in the tool's way from pose to pose.
-pub(crate) fn stations(curve: &PoseSpline) -> Vec<Station> {
+/// Stations from the first parameter to the last, about evenly spaced in the tool's way from pose to pose, `density` times as many
+/// as commonly.
+pub(crate) fn stations(curve: &PoseSpline, density: f64) -> Vec<Station> {
     let metric = Se3::default();
     let knots = curve.knots();
     let poses: Vec<_> = knots.iter().map(|&s| curve.pose(s)).collect();
     let ways: Vec<f64> = poses.windows(2).map(|pair| metric.distance(&pair[0], &pair[1])).collect();
     let total: f64 = ways.iter().sum();
-    let intervals = (total / SPACING).ceil().max(LEAST_INTERVALS).min((8 * knots.len()) as f64);
+    let intervals = (density * (total / SPACING).max(LEAST_INTERVALS)).ceil().min((8 * knots.len()) as f64);
     let spacing = (total / intervals).max(f64::MIN_POSITIVE);
     let (mut stations, mut gone) = (vec![Station { s: knots[0], length: spacing }], 0.0);
     for (k, way) in ways.iter().enumerate() {

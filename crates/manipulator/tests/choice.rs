@@ -6,9 +6,9 @@ mod support;
 
 use std::f64::consts::{PI, TAU};
 
-use manipulator::nalgebra::DVector;
+use manipulator::nalgebra::{DVector, Vector3};
 use manipulator::{JointPath, ManipulatorError, PathOptions, PathReport, Robot, follow};
-use se3_geom::{Manifold, Pose, PoseSpline, Se3, So3};
+use se3_geom::{Ends, LieGroup, Manifold, Pose, PoseSpline, Se3, So3, So3Group, centripetal_knots};
 use support::curves::{spline, writing};
 use support::ur5e;
 
@@ -108,6 +108,29 @@ fn wrist_flip_of_a_spherical_wrist_is_refused_with_the_place() {
     assert_named_near(&error, 13..=17);
 }
 
+/// The elbow passes through the stretched arm, where all branches meet and none leads on: refused between the place where the arm
+/// comes too near to it and the stretched arm itself.
+#[test]
+fn elbow_flip_is_refused_with_the_place() {
+    let robot = ur5e();
+    let options = PathOptions::default();
+    let motion = |u: f64| {
+        let mut q = robot.preferred.clone();
+        q[0] += 0.2 * u;
+        q[1] -= 0.3 * u;
+        q[2] = 0.8 - 1.6 * u;
+        q
+    };
+    let singular = |pose: &usize| {
+        let jacobian = robot.chain.body_jacobian(&motion(*pose as f64 / 29.0));
+        jacobian.singular_values().min() < options.least_singular_value
+    };
+    let first = (0..30).find(singular).unwrap();
+    assert!((5..15).contains(&first));
+    let error = follow(&robot, &spline(&poses_along(&robot, 30, motion)), None, &options).unwrap_err();
+    assert_named_near(&error, first - 1..=16);
+}
+
 fn assert_named_near(error: &ManipulatorError, poses: std::ops::RangeInclusive<usize>) {
     assert!(error.pose().is_some_and(|pose| poses.contains(&pose)), "{error}");
     assert!(
@@ -156,6 +179,83 @@ fn near_singular_path_is_followed_and_its_margin_reported() {
         let error = follow(&robot, &curve, Some(&robot.preferred), &strict).unwrap_err();
         assert!(matches!(error, ManipulatorError::Singular { pose: 0, bound: 10.0, .. }), "{error}");
     }
+}
+
+/// The limits leave a motion of the joints no more than a hair: it is found, and stays inside.
+#[test]
+fn at_limit_path_is_followed_within_the_limits() {
+    for mut robot in arms() {
+        let dof = robot.chain.dof();
+        let middle = robot.preferred.clone();
+        let motion =
+            |u: f64| DVector::from_fn(dof, |j, _| middle[j] + 0.15 * ((2.0 * u + j as f64).sin() - (j as f64).sin()));
+        let poses = poses_along(&robot, 60, motion);
+        let range = |j: usize| (0..=200).map(|i| motion(f64::from(i) / 200.0)[j]).collect::<Vec<_>>();
+        // The curve between sixty poses differs from the motion's by some 1e-6; a self-motion that keeps to a posture needs room.
+        let room = if dof == 6 { 1e-4 } else { 1e-2 };
+        for j in 0..dof {
+            robot.limits.lower[j] = range(j).into_iter().fold(f64::INFINITY, f64::min) - room;
+            robot.limits.upper[j] = range(j).into_iter().fold(f64::NEG_INFINITY, f64::max) + room;
+        }
+        let curve = spline(&poses);
+        let options = PathOptions::default();
+        let path = follow(&robot, &curve, Some(&middle), &options).unwrap();
+        assert_sound(&robot, &curve, &path, &options);
+        let report = PathReport::of(&robot, &path).unwrap();
+        assert!(report.limit_margin.value >= -1e-9 && report.limit_margin.value < 2.0 * room, "{report:?}");
+        if dof == 6 {
+            // One joint less far: the poses that need it are out of reach, the others are named as reachable.
+            robot.limits.upper[1] -= 0.05;
+            let error = follow(&robot, &curve, None, &options).unwrap_err();
+            let ManipulatorError::Unreachable(out) = &error else { panic!("{error}") };
+            assert!(!out.reachable().is_empty() && out.misses.len() < 60, "{error}");
+            let far = out.misses.iter().all(|miss| motion(miss.pose as f64 / 59.0)[1] > robot.limits.upper[1]);
+            assert!(far, "{error}");
+        }
+    }
+}
+
+/// With its fifth joint all but fixed the Panda has one self-motion less: round this curve it comes back with another wrist, and no
+/// self-motion within the limits leads from the one to the other.
+#[test]
+fn seven_joints_that_cannot_close_a_closed_curve_are_refused_as_not_cyclic() {
+    let mut robot = Robot::shipped("panda").unwrap();
+    let begin = DVector::from_column_slice(&[
+        0.4182672314221718,
+        0.8239441081533898,
+        1.123972288458519,
+        -2.2264053285867025,
+        0.05403976327198956,
+        0.7697887037420394,
+        1.734204416048612,
+    ]);
+    for joint in 0..7 {
+        let (middle, half) = if joint == 4 { (begin[joint], 0.05) } else { (0.0, 6.0) };
+        (robot.limits.lower[joint], robot.limits.upper[joint]) = (middle - half, middle + half);
+    }
+    let centre = robot.chain.forward(&begin);
+    let phases = [2.3748, 2.4368, 2.7431, 5.9847, 2.5205, 5.568];
+    let poses: Vec<Pose> = (0..40)
+        .map(|i| {
+            let turn = TAU * f64::from(i) / 40.0;
+            let way = phases.map(|phase| (turn + phase).sin() - phase.sin());
+            let place = centre.translation.vector + Vector3::new(way[0], way[1], way[2]) * 0.1527;
+            Pose::from_parts(
+                place.into(),
+                centre.rotation * So3Group::exp(Vector3::new(way[3], way[4], way[5]) * 0.5938),
+            )
+        })
+        .collect();
+    let round: Vec<Pose> = poses.iter().chain(poses.first()).copied().collect();
+    let curve = PoseSpline::through(&poses, &centripetal_knots(&Se3::default(), &round), Ends::Periodic).unwrap();
+    let options = PathOptions::default();
+    let error = follow(&robot, &curve, Some(&begin), &options).unwrap_err();
+    let ManipulatorError::NotCyclic { joint, from, to } = &error else { panic!("{error}") };
+    let whole_turns = ((to - from) / TAU).round() * TAU;
+    assert!((to - from - whole_turns).abs() > 1e-3 && error.to_string().contains(joint), "{error}");
+    // Open, the same curve is followed.
+    let open = PoseSpline::through(&poses, &centripetal_knots(&Se3::default(), &poses), Ends::Natural).unwrap();
+    assert_sound(&robot, &open, &follow(&robot, &open, Some(&begin), &options).unwrap(), &options);
 }
 
 /// A part of the poses is lifted beyond the length of the stretched arm: all of them are named, each with the distance.

@@ -123,6 +123,10 @@ fn follow(
     (goal, rate): (DVector<f64>, f64),
 ) -> End {
     let limits = &robot.limits;
+    let first = least_singular_value(robot, &q);
+    if first < bound {
+        return End::Singular(curve.domain().0, first);
+    }
     for pair in curve.knots().windows(2) {
         for part in 1..=PARTS {
             let s = pair[0] + (pair[1] - pair[0]) * part as f64 / PARTS as f64;
