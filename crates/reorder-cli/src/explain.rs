@@ -1,6 +1,6 @@
 //! What speaks for and against an order, for a person.
 
-use planner::reorder::{EdgeFigures, Method, Ordering, Topology, Verdict};
+use planner::reorder::{Condition, EdgeFigures, Method, Ordering, Topology, Verdict};
 
 /// Doubts that are written out; the rest is counted.
 const SHOWN: usize = 12;
@@ -39,8 +39,8 @@ pub(crate) fn explain(ordering: &Ordering, edges: &[EdgeFigures]) -> String {
     }
     lines.push(match (ordering.method, &ordering.repaired) {
         (_, Some(repaired)) => format!(
-            "method      short path of little turning: it leaves {} edges of the minimum spanning tree and has {} of its own",
-            repaired.dropped.len(),
+            "method      short path of little turning: it leaves {} of the minimum spanning tree and has {} of its own",
+            counted(repaired.dropped.len(), "edge"),
             repaired.added.len()
         ),
         (Method::NnCrust, _) => "method      NN-CRUST: nearest neighbours on either side".to_owned(),
@@ -60,7 +60,7 @@ pub(crate) fn explain(ordering: &Ordering, edges: &[EdgeFigures]) -> String {
     lines.push(format!("gaps        {} at most", figure(certificate.max_gap)));
     if let Some((reach, epsilon)) = certificate.reach.zip(certificate.epsilon) {
         lines.push(format!(
-            "reach       {} estimated; epsilon = gap/(2 reach) = {epsilon:.3}, theorems ask for < 1",
+            "reach       {} estimated; epsilon = gap/(2 reach) = {epsilon:.3}, the theorem asks for < 1",
             figure(reach)
         ));
     }
@@ -75,6 +75,10 @@ pub(crate) fn explain(ordering: &Ordering, edges: &[EdgeFigures]) -> String {
             figure(radius),
             figure(margin)
         ));
+    }
+    for Condition { what, value, bound, holds } in certificate.conditions(ordering.topology == Topology::Closed) {
+        let holds = if holds { "holds" } else { "fails" };
+        lines.push(format!("to certify  {what}: {}, bound {bound}: {holds}", figure(value)));
     }
     if !ordering.duplicates.is_empty() {
         lines.push(format!("equal       {} of equal points", counted(ordering.duplicates.len(), "group")));

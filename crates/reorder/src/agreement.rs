@@ -89,7 +89,10 @@ pub(crate) fn examine_sequence<M: Manifold>(
     let (mut weight_stable, mut go_on) = (None, true);
     for turning in OTHER_TURNINGS {
         if go_on {
-            let how = format!("if turning cost {turning} lengths in place of {TURNING}");
+            let how = match turning {
+                0.0 => "by length alone, whatever the path turns".to_owned(),
+                _ => format!("with turns at {turning} times their price in length in place of {TURNING}"),
+            };
             (_, go_on) = collect(solve(manifold, problem, turning, &[]), &how);
         }
     }

@@ -4,10 +4,11 @@ use se3_geom::Manifold;
 use serde::Serialize;
 
 use crate::curve::Curve;
+use crate::doubts::longest_to_usual;
 use crate::independence::look_independent;
 use crate::smoothness::{MISS_TO_GAP, Smoothness, smoothness};
 use crate::sweep::{Sweep, sweep};
-use crate::topology::{beyond_ends, longest_to_next};
+use crate::topology::{beyond_ends, closing_bound, longest_to_next};
 
 /// ε = max_gap/(2·reach) up to which an order is certified: the true reach may then be half the estimate before the theorem
 /// fails.
@@ -16,6 +17,9 @@ const EPSILON: f64 = 0.5;
 const OPENING: f64 = 4.0;
 /// The closing gap of a certified loop is at most this many times the longest other gap.
 const CLOSING: f64 = 2.0;
+/// Where gaps do not look like those of independent points, a gap of a certified order is at most this many times those around it: a step
+/// that is left out makes one of twice the others.
+const LONGEST_TO_USUAL: f64 = 1.9;
 /// Fewer points say too little about the curve between them.
 const FEWEST_POINTS: usize = 12;
 /// Samples of a smooth curve miss the parabola through their neighbours by (gap/radius)²/6 gaps or so: 0.25 of a gap is a turn of 70
@@ -75,6 +79,12 @@ pub struct Certificate {
     /// Distance of the ends in units of the longest gap (open), or the longest gap in units of the next (closed): the spanning tree closes
     /// a loop there.
     pub opening: Option<f64>,
+    /// The greatest ratio of a gap to the median of the gaps around it; 1 where the gaps look like those of independent points, of which
+    /// any may be long. Elsewhere the order may jump there: two strokes that are written one from its end to the other's end.
+    pub longest_to_usual: f64,
+    /// What the opening of a loop is compared with: 1.1; where the gaps look like those of independent points, what a gap of 3.5 mean gaps
+    /// more than the next comes to; never more than 2. `None` for an open curve.
+    pub closing_bound: Option<f64>,
 }
 
 /// One thing that a certified order needs.
@@ -102,8 +112,13 @@ impl Certificate {
             at_most("half the longest gap, in units of the reach", epsilon, EPSILON),
             at_most("miss of a point from its neighbours' parabola, in units of what is allowed", self.roughness, 1.0),
             at_most("points in a row that turn back", self.zigzag as f64, ZIGZAG as f64),
+            at_most(
+                "longest gap, in units of the median of the gaps around it",
+                self.longest_to_usual,
+                LONGEST_TO_USUAL,
+            ),
             if closed {
-                at_most("closing gap, in units of the longest other gap", opening, CLOSING)
+                at_most("longest gap, in units of the next", opening, self.closing_bound.unwrap_or(CLOSING))
             } else {
                 at_least("distance of the ends, in units of the longest gap", opening, OPENING)
             },
@@ -138,6 +153,8 @@ impl Certificate {
             noise: f64::MAX,
             usual_miss: f64::MAX,
             opening: None,
+            closing_bound: None,
+            longest_to_usual: f64::MAX,
         }
     }
 
@@ -161,6 +178,12 @@ impl Certificate {
             noise,
             usual_miss,
             opening: finite(opening),
+            longest_to_usual: if look_independent(gaps, curve.closed) {
+                1.0
+            } else {
+                longest_to_usual(gaps, curve.closed)
+            },
+            closing_bound: curve.closed.then(|| closing_bound(gaps).min(CLOSING)),
             ..Self::of_no_curve(curve.manifold, max_gap)
         }
     }
@@ -180,7 +203,9 @@ pub(crate) fn closes<M: Manifold>(path: &Curve<M>) -> bool {
     }
     let found = sweep(&ring, beyond_ends(&gaps));
     let sound = found.rivals.iter().all(Option::is_none) && found.sparse.iter().all(Option::is_none);
-    sound && Certificate::of_curve(&ring, &gaps, &found).conditions(true).iter().all(|c| c.holds)
+    // Whether it may as well be open there is another question, and a doubt.
+    let certificate = Certificate { closing_bound: None, ..Certificate::of_curve(&ring, &gaps, &found) };
+    sound && certificate.conditions(true).iter().all(|c| c.holds)
 }
 
 fn finite(x: f64) -> Option<f64> {

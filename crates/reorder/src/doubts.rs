@@ -9,6 +9,7 @@ use se3_geom::Manifold;
 use crate::certificate::Certificate;
 use crate::curve::Curve;
 use crate::ordering::{Doubt, Ordering, Topology};
+use crate::passes::of_passes;
 use crate::sides::of_sides;
 use crate::smoothness::longest_run;
 use crate::spanning_tree::Tree;
@@ -30,16 +31,6 @@ const FEWEST_POINTS: usize = 10;
 /// With fewer distinct points than this, half the longest gap must be at most this share of the reach.
 const FEW_IF_SPARSE: usize = 25;
 const SPARSE: f64 = 0.6;
-/// How many gaps in a row must alternate between longer and shorter before that is a doubt. A curve that runs back beside itself
-/// interleaves two passes, and then they all do; twelve gaps in random order alternate by chance once in ninety times, and then
-/// rarely pass the test of evenness too.
-const ALTERNATING_GAPS: usize = 12;
-/// Mean change from gap to gap, as the logarithm of their ratio, that counts as uneven: a factor of 1.2.
-const UNEVEN: f64 = 0.18;
-/// By how many times every second point alone must be more evenly spaced than all together. Independent jitter of the points
-/// gains a factor of 2 that way, two interleaved passes as much as each of them is even.
-const MORE_EVEN: f64 = 4.0;
-
 /// One doubt for every vertex where the tree branches, at its longest side edge.
 pub(crate) fn of_tree(tree: &Tree) -> Vec<Doubt> {
     tree.node_indices()
@@ -112,14 +103,13 @@ pub(crate) fn of_curve<M: Manifold>(
         at: curve.rows_at(0, curve.len() - 1),
         why: format!("{} distinct points are too few to tell one curve from another", curve.len()),
     });
-    let interleaving = if explained { None } else { of_interleaving(curve, gaps) };
+    let passes = of_passes(curve, gaps, explained);
     let edges = (0..gaps.len()).flat_map(|k| of_gap(curve, gaps, repeated, k, explained));
     // What comes near an end may be what follows it, which no search would tell.
     let is_end = |k: usize| curve.previous(k).is_none() || curve.next(k).is_none();
     let (ends, inner): (Vec<_>, Vec<_>) = (0..curve.len()).partition(|&k| is_end(k));
     let of_vertices = |all: Vec<usize>| all.into_iter().flat_map(|k| of_vertex(curve, found, k)).collect::<Vec<_>>();
-    let firm =
-        few.into_iter().chain(interleaving).chain(of_sides(curve)).chain(edges).chain(of_vertices(ends)).collect();
+    let firm = few.into_iter().chain(passes).chain(of_sides(curve)).chain(edges).chain(of_vertices(ends)).collect();
     let in_dispute = |k: usize| found.rivals[k].is_some() || found.sparse[k].is_some();
     // A point between two that are in dispute is so too.
     let between = |k: usize| curve.previous(k).zip(curve.next(k)).is_some_and(|(a, b)| in_dispute(a) && in_dispute(b));
@@ -150,33 +140,6 @@ pub(crate) fn of_ends<M: Manifold>(curve: &Curve<M>, gaps: &[f64]) -> Doubt {
     let longest = (0..gaps.len()).max_by(|&a, &b| gaps[a].total_cmp(&gaps[b])).unwrap_or(0);
     let why = format!("the gap is {:.1} times the longest other: the curve may be open here", longest_to_next(gaps));
     Doubt { at: curve.rows_at(longest, (longest + 1) % curve.len()), why }
-}
-
-/// A doubt at the middle of the first stretch that looks like two passes of a curve whose points fall between each other: gaps
-/// that alternate, while every second point alone is spaced far more evenly.
-fn of_interleaving<M: Manifold>(curve: &Curve<M>, gaps: &[f64]) -> Option<Doubt> {
-    let n = curve.len();
-    let looks_interleaved = |first: usize| {
-        let gaps: Vec<f64> = (first..first + ALTERNATING_GAPS).map(|k| gaps[k % gaps.len()]).collect();
-        let alternates = gaps.windows(3).all(|g| (g[1] > g[0]) == (g[1] > g[2]) && g[1] != g[0]);
-        let strides: Vec<f64> =
-            (first..first + ALTERNATING_GAPS - 1).map(|k| curve.distance(k % n, (k + 2) % n)).collect();
-        let together = mean_change(gaps.iter().zip(&gaps[1..]));
-        let apart = mean_change(strides.iter().zip(&strides[2..]));
-        alternates && together > UNEVEN && MORE_EVEN * apart < together
-    };
-    let last = gaps.len().checked_sub(ALTERNATING_GAPS)?;
-    // Around a loop a stretch may begin at any point.
-    let first = (0..if curve.closed { n } else { last + 1 }).find(|&first| looks_interleaved(first))?;
-    let middle = first + ALTERNATING_GAPS / 2;
-    let why = "the gaps alternate here, and every second point alone is spaced far more evenly: the curve may run back beside itself";
-    Some(Doubt { at: curve.rows_at(middle % n, (middle + 1) % n), why: why.to_owned() })
-}
-
-/// Root mean square of the logarithm of the ratios.
-fn mean_change<'a>(pairs: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
-    let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (a, b)| (sum + (b / a).ln().powi(2), count + 1.0));
-    f64::sqrt(sum / count)
 }
 
 fn of_gap<M: Manifold>(curve: &Curve<M>, gaps: &[f64], repeated: &[bool], k: usize, explained: bool) -> Vec<Doubt> {
@@ -219,6 +182,12 @@ fn of_vertex<M: Manifold>(curve: &Curve<M>, found: &Sweep, k: usize) -> Vec<Doub
         ),
     });
     [turn, rival, sparse].into_iter().flatten().collect()
+}
+
+/// The greatest ratio of a gap to the median of the gaps around it; 1 where there is no other gap.
+pub(crate) fn longest_to_usual(gaps: &[f64], closed: bool) -> f64 {
+    let ratio = |k: usize| Some(gaps[k] / median_around(gaps, k, closed)?);
+    (0..gaps.len()).filter_map(ratio).fold(1.0, f64::max)
 }
 
 /// Upper median of up to five gaps on either side of gap k; `None` where there is no other gap.

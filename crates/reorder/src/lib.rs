@@ -35,8 +35,10 @@
 //! - two neighbours both occur more than once;
 //! - points that differ by no more than the rounding of their coordinates come one after the other in a row, or were merged and leave
 //!   fewer than ten;
-//! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, as where a curve runs back beside
-//!   itself;
+//! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, or every second or third point alone is spaced
+//!   so much more evenly over twenty gaps as chance makes it once in 200 sets, or even gaps are followed by others that are as long two by two:
+//!   so are the points of a curve that runs over itself;
+//! - the points lie on a straight line, a geodesic, in uneven steps, as where something goes to and fro on a rail or about an axis;
 //! - the points were denoised ([`Options::denoise`]), and two neighbours are nearer than three deviations of the noise in their distance,
 //!   estimated from the moves;
 //! - there are three to nine distinct points: too few to tell one curve from another; or fewer than 25, and half the longest gap is more than
@@ -101,6 +103,7 @@
 //!   no more than three points in a row does the order turn back against the turn before;
 //! - the ends of an arc are at least 4 times the longest gap apart, the longest gap of a loop is at most 1.1 times the next, or at most
 //!   twice the next and 3.5 mean gaps longer where the gaps look like those of independent points;
+//! - no gap is more than 1.9 times the median of the gaps around it, where the gaps do not look like those of independent points;
 //! - there are at least 12 distinct points.
 //!
 //! What it cannot assert: that the curve does nothing between two samples. A detour that no sample shows, or a second pass
@@ -147,6 +150,7 @@ mod nearest;
 mod nn_crust;
 mod order;
 mod ordering;
+mod passes;
 mod poses;
 mod recovery;
 mod repair;

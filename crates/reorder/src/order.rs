@@ -18,10 +18,9 @@ use crate::ordering::{
 use crate::recovery::{Recovery, recover, rows_along};
 use crate::repair::{Sequence, TURNING, sequence};
 use crate::sweep::sweep;
-use crate::topology::{beyond_ends, clearly_closes, rotate_to};
+use crate::topology::{beyond_ends, rotate_to};
 use crate::tour::Problem;
-use crate::walk::far_end;
-use crate::walk::is_path;
+use crate::walk::{far_end, is_path};
 
 /// Sets of more points are repaired only on demand: the searches would take minutes.
 pub const MOST_REPAIRED_UNASKED: usize = 3000;
@@ -33,11 +32,17 @@ pub const MOST_DENOISED: usize = 30_000;
 /// are.
 const LONGEST_DISPUTE: usize = 12;
 
+/// What is said of edges of the tree that a search leaves for a path that is not taken.
+const LEFT: &str = "a shorter path that turns less does not join these two, but turns back elsewhere";
+/// So many of them are named.
+const MOST_LEFT: usize = 20;
+
 /// Orders points sampled from a curve, by the exact minimum spanning tree under the manifold's own distance, and by a short path
 /// of little turning where that tree is no order to trust.
 ///
 /// Where the tree is a path that nothing speaks against, that path is the order, and the verdict [`Verdict::Plausible`]. Elsewhere,
-/// unless [`Options::repair`] says otherwise, the order is repaired: see [`Method::Repaired`]. What may stand in
+/// unless [`Options::repair`] says otherwise, the order is repaired: see [`Method::Repaired`]; but a tree that is a path, and nowhere turns
+/// back, is kept where the repaired order turns back. What may stand in
 /// [`Ordering::doubts`] is listed in the [crate documentation](crate#verdict).
 ///
 /// O(n) memory. The tree and the examination of a path take about O(n log n) time where the manifold has an
@@ -85,21 +90,24 @@ pub(crate) fn order_among<M: Manifold>(
     let problem = Problem::new(manifold, points);
     let mut found = sequence(manifold, points, &problem, TURNING, &[], options.topology);
     let name = recovery.names(points.len());
-    let agreement =
-        examine_sequence(manifold, variants, points, &problem, &found, &recovery.tree_edges(), &name, options);
     let (before, after) = (recovery.tree_edges(), found.edges(&name));
-    if after == recovery.edges() {
+    let is_of_tree = after == recovery.edges();
+    // A tree that is a path, and nowhere turns back, is not given up for a path that does.
+    let turns_back = |rows: &[usize], closed| Curve::new(manifold, points, rows, closed).turns_back();
+    if !is_of_tree
+        && is_path(&recovery.distinct.tree)
+        && turns_back(&found.distinct_rows(&name), found.closed)
+        && !turns_back(&recovery.rows, recovery.closed)
+    {
+        let left = missing(&before, &after).into_iter().take(MOST_LEFT).map(|at| Doubt { at, why: LEFT.to_owned() });
+        examined.doubts.searchable.extend(left);
+        return by_tree(examined, recovery, tree_is_stable);
+    }
+    let agreement = examine_sequence(manifold, variants, points, &problem, &found, &before, &name, options);
+    if is_of_tree {
         examined.certified = false;
         examined.hear(agreement.doubts);
         return by_tree(examined, recovery, agreement.weight_stable.or(tree_is_stable));
-    }
-    // A tree that is a path, and nowhere turns back, is not given up for a path that does.
-    let turns_back = |rows: &[usize], closed| Curve::new(manifold, points, rows, closed).turns_back();
-    if is_path(&recovery.distinct.tree)
-        && turns_back(&found.rows, found.closed)
-        && !turns_back(&recovery.rows, recovery.closed)
-    {
-        return by_tree(examined, recovery, tree_is_stable);
     }
     turn_to_start(&mut found, &name, options.start)?;
     let mut examined = examine_repaired(manifold, points, &found, &name);
@@ -259,11 +267,7 @@ pub(crate) fn examine_rows<M: Manifold>(manifold: &M, points: &[M::Point], recov
 
 /// Equal points that stand together are one; where they stand apart, the curve passes there more than once.
 fn examine_repaired<M: Manifold>(manifold: &M, points: &[M::Point], found: &Sequence, name: &[usize]) -> Examined {
-    let mut rows = found.rows.clone();
-    rows.dedup_by_key(|row| name[*row]);
-    if found.closed && rows.len() > 1 && name[rows[0]] == name[rows[rows.len() - 1]] {
-        rows.pop();
-    }
+    let rows = found.distinct_rows(name);
     let mut times = vec![0_usize; points.len()];
     rows.iter().for_each(|&row| times[name[row]] += 1);
     let repeated: Vec<bool> = name.iter().map(|&name| times[name] > 1).collect();
@@ -275,14 +279,16 @@ fn examine_curve<M: Manifold>(curve: &Curve<M>, repeated: &[bool], unsure_of_end
     let gaps = curve.gaps();
     let found = sweep(curve, beyond_ends(&gaps));
     let certificate = Certificate::of_curve(curve, &gaps, &found);
-    let certified = certificate.conditions(curve.closed).iter().all(|condition| condition.holds);
-    let explained = certified && look_independent(&gaps, curve.closed);
+    let holds = |certificate: &Certificate| certificate.conditions(curve.closed).iter().all(|c| c.holds);
+    let certified = holds(&certificate);
+    // Where a loop is asked for, independent points may have left any gap.
+    let explained = look_independent(&gaps, curve.closed) && holds(&Certificate { closing_bound: None, ..certificate });
     let mut doubts = doubts::of_curve(curve, &gaps, &found, repeated, explained);
     doubts.firm.extend(doubts::of_few(curve, &certificate));
     if unsure_of_ends {
         doubts.firm.push(doubts::of_ends(curve, &gaps));
     }
     // Nothing is certified that a doubt had to be taken back for.
-    let certified = certified && doubts.searchable.is_empty() && (!curve.closed || clearly_closes(&gaps));
+    let certified = certified && doubts.searchable.is_empty();
     Examined { certificate, certified, doubts }
 }

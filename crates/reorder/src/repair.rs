@@ -74,6 +74,15 @@ fn cut_at_longest<M: Manifold>(problem: &Problem<M>, tour: &mut [usize]) {
 }
 
 impl Sequence {
+    /// The rows, of equal points that stand together the first alone.
+    pub(crate) fn distinct_rows(&self, name: &[usize]) -> Vec<usize> {
+        let mut rows = self.rows.clone();
+        rows.dedup_by_key(|row| name[*row]);
+        if self.closed && rows.len() > 1 && name[rows[0]] == name[rows[rows.len() - 1]] {
+            rows.pop();
+        }
+        rows
+    }
     /// Neighbours as (smaller, greater), ascending, each once, where `name` gives equal points one name; a point is not its
     /// own neighbour.
     pub(crate) fn edges(&self, name: &[usize]) -> Vec<(usize, usize)> {

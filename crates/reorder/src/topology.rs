@@ -79,9 +79,15 @@ pub(crate) fn may_be_open(gaps: &[f64]) -> bool {
     }
 }
 
-/// Whether the longest gap of a loop is what such gaps are: even ones hardly differ, independent ones do.
-pub(crate) fn clearly_closes(gaps: &[f64]) -> bool {
-    longest_to_next(gaps) <= CLOSING_TO_LONGEST[0] || look_independent(gaps, true) && !may_be_open(gaps)
+/// How many times the next gap the longest gap of a loop may be, to be what such gaps are: even ones hardly differ, independent ones do.
+pub(crate) fn closing_bound(gaps: &[f64]) -> f64 {
+    let [even, _] = CLOSING_TO_LONGEST;
+    if look_independent(gaps, true) {
+        let [_, next] = two_longest(gaps);
+        even.max(1.0 + DOUBTFUL_EXCESS * gaps.iter().sum::<f64>() / (gaps.len() as f64 * next))
+    } else {
+        even
+    }
 }
 
 fn two_longest(gaps: &[f64]) -> [f64; 2] {

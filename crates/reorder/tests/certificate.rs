@@ -69,11 +69,13 @@ fn json_has_the_fixed_shape() {
     let mut keys: Vec<_> = certificate.as_object().unwrap().keys().cloned().collect();
     keys.sort_unstable();
     let expected = [
+        "closing_bound",
         "curvature_radius",
         "distinct",
         "edge_epsilon",
         "epsilon",
         "injectivity_radius",
+        "longest_to_usual",
         "margin",
         "max_gap",
         "noise",

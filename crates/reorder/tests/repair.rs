@@ -110,9 +110,6 @@ fn denoising_orders_what_noise_has_mixed_up_and_moves_no_pose() {
             let options = Options { denoise: true, ..Options::default() };
             let found = order(&curve.manifold, &points, &options).unwrap();
             right += usize::from(is_right(&found, &rows, true));
-            if found.method == Method::Mst {
-                eprintln!("KEPT {}", is_right(&found, &rows, true));
-            }
             assert_eq!(found.moved.len(), n);
             assert!(found.moved.iter().all(|moved| moved.is_finite()) && found.moved.iter().any(|&moved| moved > 0.0));
             assert_ne!(found.verdict, Verdict::Certified);

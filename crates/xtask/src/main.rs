@@ -8,11 +8,13 @@ mod mujoco;
 mod process;
 mod python;
 mod ros;
+mod score;
 mod setup;
 mod soak;
 mod test;
 
 use clap::Parser;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Chores of the reorder workspace.
@@ -30,6 +32,16 @@ enum Chore {
         #[arg(default_value_t = 1000)]
         amount: u32,
     },
+    /// Shuffle recordings whose order is known, have `reorder order` put them right, and print how many it did
+    Score {
+        /// CSV files in true order, and a manifest.json that lists them as {"file", "kind"}; handwriting of ours if none is given
+        folder: Option<PathBuf>,
+        /// Rows that are kept of each, evenly thinned
+        #[arg(long, default_value_t = 1000)]
+        max_n: usize,
+        #[arg(long, default_value_t = 7)]
+        seed: u64,
+    },
     /// Measure an area (geometry, ordering, manipulator) beside the libraries that others would use, and print the table
     Bench { area: String },
     /// Set up, then run clippy and rustdoc over the workspace with warnings as errors
@@ -44,6 +56,7 @@ fn main() -> ExitCode {
         Chore::Setup => setup::run(&layout),
         Chore::Demo => demo::run(&layout),
         Chore::Soak { name, amount } => soak::run(&layout, name, amount),
+        Chore::Score { folder, max_n, seed } => score::run(&layout, folder.as_deref(), max_n, seed),
         Chore::Bench { area } => bench::run(&layout, &area),
         Chore::Lint => test::lint(&layout),
         Chore::Test => test::test(&layout),

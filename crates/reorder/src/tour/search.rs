@@ -96,12 +96,16 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
             if unsettled.is_empty() {
                 break;
             }
+            let mut gained = false;
             for _ in 0..unsettled.len().max(FEWEST_KICKS) {
                 if self.problem.was_cut_short() {
                     return;
                 }
                 let v = unsettled[random.below(unsettled.len())];
-                self.kick(v, &mut random);
+                gained |= self.kick(v, &mut random);
+            }
+            if !gained {
+                break;
             }
             self.bridge();
             self.ring.keep();
@@ -145,8 +149,8 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         Move::Swap(nodes, random.below(2) == 0)
     }
 
-    /// Exchanges two stretches around v, improves there, and takes it all back unless it gained.
-    fn kick(&mut self, v: usize, random: &mut Random) {
+    /// Exchanges two stretches around v, improves there, and takes it all back unless it gained; whether it did.
+    fn kick(&mut self, v: usize, random: &mut Random) -> bool {
         let n = self.ring.len();
         let longest = KICK.min((n - 2) / 2);
         let (first, second) = (1 + random.below(longest), 1 + random.below(longest));
@@ -159,7 +163,8 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
         let mut touched = Vec::new();
         self.apply(kick, &mut touched);
         delta += self.improve_touching(&mut touched);
-        if delta < -RELATIVE_GAIN * before {
+        let gained = delta < -RELATIVE_GAIN * before;
+        if gained {
             self.ring.keep();
         } else {
             self.ring.take_back();
@@ -167,6 +172,7 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
                 self.turns[v] = self.turn_at(v);
             }
         }
+        gained
     }
 
     /// Moves the opening, which is near to everything, to where it gains most.
