@@ -19,7 +19,9 @@ const MOST_MOVES: usize = 100;
 /// Stretches that a kick exchanges are at most this long, so that it can be mended near by.
 const KICK: usize = 8;
 /// No fewer kicks in a round than this, where there is anything to kick.
-const FEWEST_KICKS: usize = 20;
+const FEWEST_KICKS: usize = 50;
+/// After so many rounds in a row that gained nothing, another one seldom does.
+const IN_VAIN: usize = 2;
 const SEED: u64 = 0x5EED;
 
 /// A tour of least Σ distance + λ Σ turning, as far as the search finds it.
@@ -91,6 +93,7 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
             return;
         }
         let mut random = Random::seeded(SEED);
+        let mut in_vain = 0;
         for _ in 0..rounds {
             let unsettled = self.unsettled();
             if unsettled.is_empty() {
@@ -104,7 +107,8 @@ impl<'p, 'a, M: Manifold> Search<'p, 'a, M> {
                 let v = unsettled[random.below(unsettled.len())];
                 gained |= self.kick(v, &mut random);
             }
-            if !gained {
+            in_vain = if gained { 0 } else { in_vain + 1 };
+            if in_vain == IN_VAIN {
                 break;
             }
             self.bridge();
