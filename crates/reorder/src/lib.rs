@@ -38,7 +38,8 @@
 //! - twelve gaps in a row alternate while every second point alone is spaced far more evenly, or every second or third point alone is spaced
 //!   so much more evenly over twenty gaps as chance makes it once in 200 sets, or even gaps are followed by others that are as long two by two:
 //!   so are the points of a curve that runs over itself;
-//! - the points lie on a straight line, a geodesic, in uneven steps, as where something goes to and fro on a rail or about an axis;
+//! - two gaps within twelve are much longer or much shorter than both beside them, while most gaps change smoothly; or three are, anywhere, where
+//!   the points lie on a straight line, a geodesic, as where something goes to and fro on a rail or about an axis;
 //! - the points were denoised ([`Options::denoise`]), and two neighbours are nearer than three deviations of the noise in their distance,
 //!   estimated from the moves;
 //! - there are three to nine distinct points: too few to tell one curve from another; or fewer than 25, and half the longest gap is more than

@@ -73,7 +73,8 @@ const MOST_WEIGHED: usize = 20_000;
 ///
 /// An order along the curve bends as little in rotation as in translation: with w = log_p(previous) + log_p(next) at every point,
 /// T = Σ‖w_translation‖ and R = Σ‖w_rotation‖, it is the product T·√R that is made small, which no unit of length changes. Where it is
-/// least, so is T + L·R of L = ½·T/R: a quick order is searched for a weight, the weight is taken from it, and so on, from the ratio
+/// least, so is T + L·R of L = ½·T/R, and that L is the answer (not the one that the order was found at, which of the recordings put fewer
+/// right): a quick order is searched for a weight, the weight is taken from it, and so on, from the ratio
 /// of the spreads. This may end beside the least product, so that it is begun anew from weights beside the one that it ended with, for
 /// sets of up to 3,000 points. Scaling all translations scales L. Where there are no rotations, or nothing else, every L gives one
 /// order, and 1 is returned.
@@ -228,6 +229,6 @@ mod tests {
         assert!(first.product() > truth.product());
         let found = least_turning::<Se2>(&poses, spread.ratio()).unwrap().unwrap();
         assert!(found.product() <= truth.product(), "{} above {}", found.product(), truth.product());
-        assert_eq!(automatic_weight::<Se2>(&poses).unwrap(), found.weight());
+        assert_eq!(automatic_weight::<Se2>(&poses).unwrap(), 0.5 * found.translations_m / found.rotations_rad);
     }
 }

@@ -51,3 +51,17 @@ fn a_line_with_a_step_left_out_is_not_certified() {
     let found = in_plane(&line((0..20).map(f64::from).chain((0..20).map(|k| f64::from(k) + 21.0))));
     assert_eq!(found.verdict, Verdict::Plausible, "{}", reasons(&found));
 }
+
+/// A pen that sets out the wrong way and turns back over its own line, on a curve that bends.
+#[test]
+fn a_short_turn_back_over_the_line_is_doubted_for_the_jerks() {
+    // Slow at first, then along at steps that grow.
+    let way = |k: u32| 0.012 * (f64::from(k) - 4.3).powi(2) * (f64::from(k) - 4.3).signum();
+    let bent = |s: f64| (10.0 * (0.1 * s).sin(), 10.0 * (1.0 - (0.1 * s).cos()));
+    let turned: Vec<(f64, f64)> = (0..40).map(|k| bent(if k < 4 { -0.77 * way(k) } else { way(k) })).collect();
+    let found = in_plane(&turned);
+    assert_eq!(found.verdict, Verdict::Ambiguous);
+    assert!(reasons(&found).contains("jump between long and short"), "{}", reasons(&found));
+    let along: Vec<(f64, f64)> = (0..40).map(|k| bent(way(k + 5))).collect();
+    assert_ne!(in_plane(&along).verdict, Verdict::Ambiguous, "{}", reasons(&in_plane(&along)));
+}
