@@ -7,8 +7,8 @@ use crate::bounds::Bounds;
 use crate::error::Result;
 use crate::options::TimingOptions;
 use crate::quintic::Quintic;
-use crate::rest_to_rest::{least_duration, not_met};
-use crate::robot::{Limits, Robot};
+use crate::rest_to_rest::rest_to_rest;
+use crate::robot::Robot;
 use crate::sampling::Sampling;
 use crate::slowing::{check_running, slow_to_stop};
 use crate::trajectory::{JointPoint, JointTrajectory};
@@ -18,10 +18,10 @@ use crate::trajectory::{JointPoint, JointTrajectory};
 ///
 /// The shorter of two: a single quintic from the state to the goal, which has a least and a greatest legal duration (too short breaks
 /// limits, too long overshoots), or the smooth stop of [`slow_to_stop`] with a straight quintic to the goal laid over it, as
-/// early as the limits allow. If nothing else is legal, the straight move begins when the robot stands.
+/// early as the limits allow. If nothing else is legal, [`rest_to_rest`] follows when the robot stands.
 ///
 /// # Errors
-/// Those of [`slow_to_stop`] and of [`rest_to_rest`](crate::rest_to_rest).
+/// Those of [`slow_to_stop`] and of [`rest_to_rest`].
 pub fn connect(
     robot: &Robot,
     running: &JointTrajectory,
@@ -33,12 +33,15 @@ pub fn connect(
     check_running(robot, running, at_s)?;
     robot.check_within_limits("the goal of the hand-over", goal)?;
     let stop = slow_to_stop(robot, running, at_s, options)?;
+    let stopped = DVector::from_column_slice(&stop.points[stop.points.len() - 1].positions);
+    // Legal under every limit, those of torque and tool too: what the others begin with, and what is left without them.
+    let afterwards = rest_to_rest(robot, &stopped, goal, options)?;
     let from = running.state_at(at_s);
     let mut best: Option<JointTrajectory> = None;
     let shorter =
         |duration: f64, best: &Option<JointTrajectory>| best.as_ref().is_none_or(|b| duration < b.duration_s());
     let sampling = Sampling { rate_hz: options.rate_hz, joint_names: robot.chain.joint_names() };
-    let over = Overlay::new(&stop, goal, &bounds.limits);
+    let over = Overlay { stop: &stop, goal, way: goal - &stopped, least_duration: afterwards.duration_s() };
     let longest = stop.duration_s() + over.least_duration;
     if let Some(duration) = shortest_quintic(&bounds, &from, goal, longest) {
         let direct = sampled_quintic(&from, goal, duration, &sampling)?;
@@ -55,13 +58,7 @@ pub fn connect(
             }
         }
     }
-    match best {
-        Some(best) => Ok(best),
-        None => {
-            let last = over.trajectory(stop.points.len() - 1, over.least_duration, &sampling)?;
-            Err(not_met(&against_from(&bounds, &last, Some(&from)).audit))
-        }
-    }
+    Ok(best.unwrap_or_else(|| stop.switched(stop.duration_s(), &afterwards)))
 }
 
 /// Durations that are tried for a single quintic grow by this factor.
@@ -141,17 +138,7 @@ const BEGINNINGS: usize = 8;
 /// How much slower than by itself the straight move may be.
 const STRETCHES: [f64; 6] = [1.0, 1.15, 1.35, 1.6, 2.0, 2.6];
 
-impl<'a> Overlay<'a> {
-    fn new(stop: &'a JointTrajectory, goal: &'a DVector<f64>, limits: &Limits) -> Self {
-        let end = DVector::from_column_slice(&stop.points[stop.points.len() - 1].positions);
-        let way = goal - end;
-        let least_duration = (0..way.len())
-            .map(|j| least_duration(way[j].abs(), limits.velocity[j], limits.acceleration[j], limits.jerk[j]))
-            .fold(0.0, f64::max);
-        // As in a move from rest to rest: rounding of the points stays below the limits.
-        Self { stop, goal, way, least_duration: least_duration * 1.0001 }
-    }
-
+impl Overlay<'_> {
     /// Index of the point of the stop at which the straight move begins, and its duration; the shortest wholes first.
     fn attempts(&self) -> Vec<(usize, f64)> {
         let last = self.stop.points.len() - 1;
@@ -163,7 +150,6 @@ impl<'a> Overlay<'a> {
                 let room = end - self.stop.points[begin].time_s;
                 STRETCHES.map(|stretch| (begin, (stretch * self.least_duration).max(room)))
             })
-            .chain([(last, self.least_duration)])
             .collect();
         let whole = |&(begin, duration): &(usize, f64)| self.stop.points[begin].time_s + duration;
         attempts.sort_by(|a, b| whole(a).total_cmp(&whole(b)));

@@ -5,20 +5,24 @@ mod support;
 
 use manipulator::nalgebra::DVector;
 use manipulator::{
-    EndDerivatives, JointPath, JointTrajectory, ManipulatorError, Robot, TimingOptions, audit, audit_from, connect,
-    rest_to_rest, slow_to_stop, time_path,
+    EndDerivatives, JointPath, JointTrajectory, ManipulatorError, Robot, TimingOptions, audit, audit_from, audit_under,
+    connect, rest_to_rest, slow_to_stop, time_path,
 };
 use support::{Random, random_configuration, random_path};
 
 /// A timed random path around the configuration that the arm prefers.
 fn running(robot: &Robot, random: &mut Random) -> JointTrajectory {
+    running_under(robot, &TimingOptions::default(), random)
+}
+
+fn running_under(robot: &Robot, options: &TimingOptions, random: &mut Random) -> JointTrajectory {
     let around_zero = random_path(robot, 1.5, 60, random);
     let largest = around_zero.knots().iter().map(|&s| around_zero.at(s)[0].amax()).fold(0.0, f64::max);
     let nearby: Vec<_> =
         around_zero.knots().iter().map(|&s| &robot.preferred + &around_zero.at(s)[0] * (0.6 / largest)).collect();
     let none = EndDerivatives { first: DVector::zeros(robot.chain.dof()), second: DVector::zeros(robot.chain.dof()) };
     let path = JointPath::through(around_zero.knots(), &nearby, [&none, &none]).unwrap();
-    time_path(robot, &path, &TimingOptions::default()).unwrap().trajectory
+    time_path(robot, &path, options).unwrap().trajectory
 }
 
 /// A time of a running trajectory: that of one of its points, or any other.
@@ -183,6 +187,28 @@ fn a_hand_over_begins_in_the_state_and_ends_at_rest_at_the_goal() {
     gain.sort_by(f64::total_cmp);
     println!("median of stop and go {}", gain[gain.len() / 2]);
     assert!(gain[gain.len() / 2] < 0.9);
+}
+
+/// Limits of the tool are slower than those of the joints by far: a way that is legal at rest is legal after a stop.
+#[test]
+fn a_hand_over_keeps_the_limits_of_the_tool() {
+    let mut random = Random(101);
+    for (tool_speed_m_s, tool_acceleration_m_s2) in [(Some(0.1), None), (None, Some(0.3)), (Some(0.1), Some(0.3))] {
+        let options = TimingOptions { tool_speed_m_s, tool_acceleration_m_s2, ..TimingOptions::default() };
+        for name in ["ur5e", "vx300s", "panda"] {
+            let robot = Robot::shipped(name).unwrap();
+            let running = running_under(&robot, &options, &mut random);
+            let at_s = some_time(&running, &mut random);
+            for part in [0.05, 1.0] {
+                let goal = &robot.preferred + random_configuration(&robot, 0.5, &mut random) * part;
+                let next = connect(&robot, &running, at_s, &goal, &options).unwrap();
+                assert_taken_over(&robot, &running, at_s, &next);
+                let found = audit_under(&robot, &next, options.audit_rules(), Some(&running.state_at(at_s)));
+                assert!(found.limits_ok, "{found:?}");
+                assert_eq!(next.points.last().unwrap().positions, goal.as_slice());
+            }
+        }
+    }
 }
 
 /// At its last point, and at its first, a trajectory is at rest: nothing is left to stop, and a hand-over is a move from rest.
