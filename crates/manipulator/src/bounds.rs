@@ -2,9 +2,10 @@
 
 use nalgebra::DVector;
 
-use crate::audit::AuditRules;
+use crate::audit::{Audit, AuditRules};
 use crate::chain::Chain;
 use crate::dynamics::Dynamics;
+use crate::error::ManipulatorError;
 use crate::holding::holding_torque;
 use crate::quintic::Quintic;
 use crate::robot::{Limits, Robot};
@@ -58,6 +59,11 @@ impl<'a> Bounds<'a> {
                 *ratio = if finite { ratio.max(peak(exact)) } else { f64::INFINITY };
             }
         }
+    }
+
+    /// Why a trajectory of which that was found is withheld.
+    pub(crate) fn not_met(&self, found: Audit) -> ManipulatorError {
+        ManipulatorError::LimitsNotMet { audit: Box::new(found), rules: self.rules }
     }
 
     pub(crate) fn samples_anything(&self) -> bool {

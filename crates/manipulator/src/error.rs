@@ -1,5 +1,6 @@
 //! Everything that can go wrong between a robot description and a legal trajectory.
 
+use crate::audit::{Audit, AuditRules};
 use crate::excess::{beyond, figure};
 use crate::reach::OutOfReach;
 
@@ -279,21 +280,13 @@ pub enum ManipulatorError {
         /// Duration of the running trajectory, in s.
         duration_s: f64,
     },
-    /// Slowing down did not make the trajectory legal; it is withheld.
-    #[error(
-        "the trajectory would break limits after every slowdown (velocity {velocity:.4}, acceleration {acceleration:.4}, jerk {jerk:.4}, torque {torque:.4} of the limit, position margin {position_margin:.2e}), so there is none"
-    )]
+    /// The last trajectory that was tried breaks limits; it is withheld.
+    #[error("no trajectory that keeps every limit was found; of the last one tried {}", audit.faults(rules))]
     LimitsNotMet {
-        /// Peak over limit.
-        velocity: f64,
-        /// Peak over limit.
-        acceleration: f64,
-        /// Peak over limit.
-        jerk: f64,
-        /// Peak over limit, 0 where it is not known.
-        torque: f64,
-        /// Least distance to a position limit, in rad or m; negative beyond it.
-        position_margin: f64,
+        /// What was found of it.
+        audit: Box<Audit>,
+        /// What it was to keep.
+        rules: AuditRules,
     },
 }
 

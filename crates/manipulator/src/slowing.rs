@@ -4,7 +4,6 @@ use crate::audit::against_from;
 use crate::error::{ManipulatorError, Result};
 use crate::options::TimingOptions;
 use crate::quintic::Quintic;
-use crate::rest_to_rest::not_met;
 use crate::robot::{Limits, Robot};
 use crate::trajectory::{JointPoint, JointTrajectory, whole_ns};
 
@@ -39,7 +38,7 @@ pub fn slow_to_stop(
         }
     }
     let found = if best.points.len() == remainder.points { remainder } else { audit(&best) };
-    if found.limits_ok { Ok(best) } else { Err(not_met(&found)) }
+    if found.limits_ok { Ok(best) } else { Err(bounds.not_met(found)) }
 }
 
 /// Parts of the limits to aim at: quintics between points overshoot what they interpolate, a little.

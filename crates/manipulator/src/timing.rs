@@ -10,7 +10,6 @@ use crate::gridpoints::{Coarse, even_grid};
 use crate::holding::too_weak_along;
 use crate::joint_path::JointPath;
 use crate::options::{JointLimits, TimingOptions};
-use crate::rest_to_rest::not_met;
 use crate::robot::{Limits, Robot};
 use crate::sampling::{Sampling, sample};
 use crate::speed_profile::{Smoothed, SpeedProfile};
@@ -258,7 +257,7 @@ fn slowed_until_legal(
         // Where no slowdown helps, a position limit is broken, or holding the arm alone takes too much torque.
         if attempt == ATTEMPTS || slowdown <= 1.0 || slowdown.is_infinite() {
             let weak = slowdown.is_infinite().then(|| too_weak_along(path, bounds)).flatten();
-            return Err(weak.unwrap_or_else(|| not_met(&audit)));
+            return Err(weak.unwrap_or_else(|| bounds.not_met(audit)));
         }
         duration = slowed(&trajectory, slowdown);
         if !duration.is_finite() {

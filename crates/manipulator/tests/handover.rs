@@ -152,8 +152,11 @@ fn a_stop_that_takes_more_torque_than_there_is_is_not_returned() {
         // Where even going on takes too much there is nothing to return.
         robot.limits.effort.iter_mut().zip(&needed).for_each(|(effort, needed)| *effort = 0.9 * needed);
         let refused = slow_to_stop(&robot, &running, at_s, &options).unwrap_err();
-        let ManipulatorError::LimitsNotMet { torque, velocity, jerk, .. } = refused else { panic!("{refused}") };
-        assert!(torque > 1.0 && velocity <= 1.0 && jerk <= 1.0, "{refused}");
+        let message = refused.to_string();
+        let ManipulatorError::LimitsNotMet { audit, .. } = refused else { panic!("{message}") };
+        let found = audit.max_ratio;
+        assert!(found.torque.unwrap() > 1.0 && found.velocity <= 1.0 && found.jerk <= 1.0, "{message}");
+        assert!(message.contains("a joint's torque goes") && !message.contains("velocity"), "{message}");
     }
     assert!(too_hard > 0, "no stop was too hard: the test shows nothing");
 }
@@ -256,6 +259,12 @@ fn what_cannot_be_handed_over_is_named() {
     let slow = TimingOptions { velocity_scale: 0.01, ..options };
     let refused = connect(&robot, &running, middle, &robot.preferred, &slow).unwrap_err();
     assert!(matches!(refused, ManipulatorError::LimitsNotMet { .. }), "{refused}");
+    assert!(refused.to_string().contains("a joint's velocity goes"), "{refused}");
+    // A limit of the tool that the running trajectory exceeds is named with its value.
+    let slow = TimingOptions { tool_speed_m_s: Some(0.002), ..TimingOptions::default() };
+    let refused = slow_to_stop(&robot, &running, middle, &slow).unwrap_err().to_string();
+    assert!(refused.contains("the tool's speed goes") && refused.contains("its limit of 0.002 m/s"), "{refused}");
+    assert!(!refused.contains("joint"), "{refused}");
 }
 
 /// The audit of a take-over judges the first point against the given state, bit for bit.

@@ -250,8 +250,9 @@ fn passed_audit(
     handover: Option<&Handover>,
 ) -> Result<Audit, Refusal> {
     let from = handover.map(Handover::state);
-    let audit = audit_under(robot, trajectory, config.timing.audit_rules(), from.as_ref());
-    if audit.limits_ok { Ok(audit) } else { Err(Refusal::Limits(Box::new(audit))) }
+    let rules = config.timing.audit_rules();
+    let audit = audit_under(robot, trajectory, rules, from.as_ref());
+    if audit.limits_ok { Ok(audit) } else { Err(Refusal::Limits { audit: Box::new(audit), rules }) }
 }
 
 fn accuracy(

@@ -1,6 +1,6 @@
 //! Why there is no trajectory.
 
-use manipulator::{Audit, ManipulatorError};
+use manipulator::{Audit, AuditRules, ManipulatorError};
 use reorder::{OrderError, Ordering, Verdict};
 use se3_geom::{InvalidPose, SplineError};
 
@@ -130,8 +130,13 @@ pub enum Refusal {
         error_rad: f64,
     },
     /// The whole trajectory, approach included, does not pass its audit; it is withheld.
-    #[error("the trajectory does not pass its audit and is withheld: {0:?}")]
-    Limits(Box<Audit>),
+    #[error("the trajectory does not pass its audit and is withheld: {}", audit.faults(rules))]
+    Limits {
+        /// What was found of it.
+        audit: Box<Audit>,
+        /// What it was to keep.
+        rules: AuditRules,
+    },
 }
 
 impl Refusal {
