@@ -5,8 +5,8 @@ mod support;
 
 use manipulator::nalgebra::DVector;
 use manipulator::{
-    IkOptions, ManipulatorError, PathOptions, Robot, TimingOptions, audit, connect, follow, rest_to_rest, slow_to_stop,
-    solve_ik, time_path,
+    AuditRules, IkOptions, ManipulatorError, PathOptions, Robot, TimingOptions, audit, audit_under, connect, follow,
+    rest_to_rest, slow_to_stop, solve_ik, time_path,
 };
 use support::curves::{spline, writing};
 use support::{Random, random_path, ur5e};
@@ -132,6 +132,21 @@ fn limits_that_were_set_by_hand_are_checked_before_use() {
     for refused in refusals(&robot) {
         assert_eq!(refused, ManipulatorError::WrongSize { what: "a limit", expected: 6, given: 5 });
     }
+}
+
+/// The fields of the rules are public too, and a limit that is none would pass every comparison.
+#[test]
+fn tool_limits_that_are_none_fail_every_audit() {
+    let robot = ur5e();
+    let home = robot.preferred.clone();
+    let legal = rest_to_rest(&robot, &home, &home.add_scalar(0.1), &TimingOptions::default()).unwrap();
+    let passes = |rules: AuditRules| audit_under(&robot, &legal, rules, None).limits_ok;
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(!passes(AuditRules { tool_speed_m_s: Some(value), ..AuditRules::default() }), "{value}");
+        assert!(!passes(AuditRules { tool_acceleration_m_s2: Some(value), ..AuditRules::default() }), "{value}");
+    }
+    let wide = AuditRules { tool_speed_m_s: Some(10.0), tool_acceleration_m_s2: Some(1e3), ..AuditRules::default() };
+    assert!(passes(wide));
 }
 
 #[test]
