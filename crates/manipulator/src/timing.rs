@@ -107,9 +107,11 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
 /// It bounds what [`time_path`] can reach, as closely as the gridpoints resolve the path, and takes a few milliseconds.
 ///
 /// # Errors
-/// [`ManipulatorError::Timing`], [`ManipulatorError::InvalidOption`], [`ManipulatorError::NonFinite`].
+/// [`ManipulatorError::Timing`], [`ManipulatorError::InvalidOption`], [`ManipulatorError::NonFinite`],
+/// [`ManipulatorError::WrongSize`] and [`ManipulatorError::InvalidJoint`] for a path or limits that are not the robot's.
 pub fn least_duration_s(robot: &Robot, path: &JointPath, options: &TimingOptions, intervals: usize) -> Result<f64> {
     let bounds = options.bounds(robot)?;
+    robot.check_configuration("the joint path", &path.at(path.domain().0)[0])?;
     let (_, times) = even_grid(path, &bounds, options, intervals.max(2))?.second_order(None)?;
     times.last().copied().ok_or(ManipulatorError::NonFinite { what: "the joint path" })
 }

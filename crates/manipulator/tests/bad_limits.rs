@@ -6,7 +6,7 @@ mod support;
 use manipulator::nalgebra::DVector;
 use manipulator::{
     AuditRules, IkOptions, ManipulatorError, PathOptions, Robot, TimingOptions, audit, audit_under, connect, follow,
-    rest_to_rest, slow_to_stop, solve_ik, time_path,
+    least_duration_s, rest_to_rest, slow_to_stop, solve_ik, time_path,
 };
 use support::curves::{spline, writing};
 use support::{Random, random_path, ur5e};
@@ -94,6 +94,7 @@ fn limits_that_were_set_by_hand_are_checked_before_use() {
         assert!(!audit(robot, &running).limits_ok);
         [
             time_path(robot, &path, &options).map(drop),
+            least_duration_s(robot, &path, &options, 100).map(drop),
             rest_to_rest(robot, &home, &home.add_scalar(0.1), &options).map(drop),
             slow_to_stop(robot, &running, half_way, &options).map(drop),
             connect(robot, &running, half_way, &home, &options).map(drop),

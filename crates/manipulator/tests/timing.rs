@@ -6,7 +6,7 @@ mod support;
 use manipulator::nalgebra::DVector;
 use manipulator::{
     AuditRules, EndDerivatives, JointPath, JointTrajectory, ManipulatorError, PathOptions, Robot, TimingOptions, audit,
-    audit_under, follow, rest_to_rest, time_path,
+    audit_under, follow, least_duration_s, rest_to_rest, time_path,
 };
 use support::curves::{spline, writing};
 use support::{Random, random_configuration, random_path, ur5e};
@@ -217,13 +217,19 @@ fn a_path_of_nan_or_of_the_wrong_size_is_refused() {
         JointPath::through(&[0.0, 0.0], &values, [&zero, &zero]),
         Err(ManipulatorError::ParametersNotIncreasing { index: 1, .. })
     ));
-    let short = EndDerivatives { first: DVector::zeros(5), second: DVector::zeros(5) };
-    let values = [DVector::zeros(5), DVector::from_element(5, 1.0)];
-    let path = JointPath::through(&[0.0, 1.0], &values, [&short, &short]).unwrap();
-    assert!(matches!(
-        time_path(&robot, &path, &TimingOptions::default()),
-        Err(ManipulatorError::WrongSize { expected: 6, given: 5, .. })
-    ));
+    for dof in [5, 7] {
+        let other = EndDerivatives { first: DVector::zeros(dof), second: DVector::zeros(dof) };
+        let values = [DVector::zeros(dof), DVector::from_element(dof, 1.0)];
+        let path = JointPath::through(&[0.0, 1.0], &values, [&other, &other]).unwrap();
+        let options = TimingOptions::default();
+        let refused = [
+            time_path(&robot, &path, &options).map(drop).unwrap_err(),
+            least_duration_s(&robot, &path, &options, 100).map(drop).unwrap_err(),
+        ];
+        for refused in refused {
+            assert_eq!(refused, ManipulatorError::WrongSize { what: "the joint path", expected: 6, given: dof });
+        }
+    }
 }
 
 /// Points so large that the polynomial between them overflows, and joints under other names, are not legal.
