@@ -6,7 +6,9 @@ mod support;
 use std::f64::consts::{PI, TAU};
 
 use manipulator::nalgebra::{DVector, Vector3};
-use manipulator::{IkOptions, JointPath, ManipulatorError, PathOptions, Robot, follow, solve_ik};
+use manipulator::{
+    IkOptions, JointPath, ManipulatorError, PathOptions, Robot, TimingOptions, follow, solve_ik, time_path,
+};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, Twist, centripetal_knots, pose_from_xyzw};
 use support::curves::{spline, writing};
 use support::{Random, random_configuration, ur5e};
@@ -274,4 +276,19 @@ fn malformed_requests_are_refused() {
         follow(&robot, &curve, None, &options),
         Err(ManipulatorError::InvalidOption { name: "tolerance_m", .. })
     ));
+}
+
+/// The tool stays where it is: so does the arm, with as many joints as it may have.
+#[test]
+fn a_curve_of_no_length_is_followed_by_standing_still() {
+    for name in Robot::shipped_names() {
+        let robot = Robot::shipped(name).unwrap();
+        let pose = robot.chain.forward(&robot.preferred);
+        let curve = PoseSpline::through(&[pose, pose], &[0.0, 1.0], Ends::Natural).unwrap();
+        let path = follow(&robot, &curve, Some(&robot.preferred), &PathOptions::default()).unwrap();
+        let (metres, radians) = greatest_deviation(&robot, &curve, &path);
+        assert!(metres < 1e-8 && radians < 1e-8, "{name}: {metres} m, {radians} rad");
+        let timed = time_path(&robot, &path, &TimingOptions::default()).unwrap();
+        assert!(timed.audit.limits_ok);
+    }
 }
