@@ -97,6 +97,7 @@ pub fn follow(
     options.check()?;
     let reference = start.unwrap_or(&robot.preferred);
     robot.check_configuration("the start configuration", reference)?;
+    robot.check_configuration("the preferred configuration", &robot.preferred)?;
     let tracker = Tracker { robot, curve, least_singular_value: options.least_singular_value, posture: None };
     let request = Request { tracker, stations: stations(curve, 1.0), afresh: false, reference, options };
     request.path().or_else(|stopped| {

@@ -292,3 +292,14 @@ fn a_curve_of_no_length_is_followed_by_standing_still() {
         assert!(timed.audit.limits_ok);
     }
 }
+
+/// Where a redundant arm looks for configurations afresh it begins at the one it prefers, whatever the start.
+#[test]
+fn a_preferred_configuration_of_the_wrong_size_is_refused() {
+    let mut robot = Robot::shipped("panda").unwrap();
+    let start = robot.preferred.clone();
+    let curve = spline(&writing(&robot, 20));
+    robot.preferred = DVector::zeros(6);
+    let refused = follow(&robot, &curve, Some(&start), &PathOptions::default()).unwrap_err();
+    assert!(matches!(refused, ManipulatorError::WrongSize { expected: 7, given: 6, .. }), "{refused}");
+}
