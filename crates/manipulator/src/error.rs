@@ -106,6 +106,12 @@ pub enum ManipulatorError {
         /// Where.
         what: &'static str,
     },
+    /// A trajectory that this robot cannot execute.
+    #[error("{what} is none of this robot: it needs its joints in their order, finite numbers for each, and increasing times from 0")]
+    NotOfRobot {
+        /// What the trajectory is.
+        what: &'static str,
+    },
     /// An option is out of its range.
     #[error("option {name} is {value}, but must be {must_be}")]
     InvalidOption {

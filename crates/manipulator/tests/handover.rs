@@ -252,7 +252,11 @@ fn what_cannot_be_handed_over_is_named() {
     let mut spoilt = running.clone();
     spoilt.points[5].velocities.pop();
     let refused = connect(&robot, &spoilt, middle, &robot.preferred, &options).unwrap_err();
-    assert!(matches!(refused, ManipulatorError::NonFinite { .. }), "{refused}");
+    assert!(matches!(refused, ManipulatorError::NotOfRobot { .. }), "{refused}");
+    let mut others = running.clone();
+    others.joint_names.reverse();
+    let refused = connect(&robot, &others, middle, &robot.preferred, &options).unwrap_err().to_string();
+    assert!(refused.contains("the running trajectory") && refused.contains("its joints in their order"), "{refused}");
     let empty = JointTrajectory { points: Vec::new(), ..running.clone() };
     assert!(slow_to_stop(&robot, &empty, 0.0, &options).is_err());
     // Under tighter limits than it was planned for, what runs is illegal, and so is everything that begins in its state.
