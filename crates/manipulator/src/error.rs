@@ -107,7 +107,9 @@ pub enum ManipulatorError {
         what: &'static str,
     },
     /// A trajectory that this robot cannot execute.
-    #[error("{what} is none of this robot: it needs its joints in their order, finite numbers for each, and increasing times from 0")]
+    #[error(
+        "{what} is none of this robot: it needs its joints in their order, finite numbers for each, and increasing times from 0"
+    )]
     NotOfRobot {
         /// What the trajectory is.
         what: &'static str,

@@ -16,9 +16,9 @@ use crate::trajectory::{JointPoint, JointTrajectory};
 /// The move that takes over from the trajectory `running` at its time `at_s` and leads to rest at `goal`, of shape (dof). It begins at
 /// time 0 in exactly the state at `at_s`; velocity and acceleration are continuous there, all limits are kept.
 ///
-/// The shorter of two: a single quintic from the state to the goal, which has a least and a greatest legal duration (too short breaks
-/// limits, too long overshoots), or the smooth stop of [`slow_to_stop`] with a straight quintic to the goal laid over it, as
-/// early as the limits allow. If nothing else is legal, [`rest_to_rest`] follows when the robot stands.
+/// The shortest of three: a single quintic from the state to the goal, which has a least and a greatest legal duration (too short breaks
+/// limits, too long overshoots); the smooth stop of [`slow_to_stop`] with a straight quintic to the goal laid over it, as
+/// early as the limits allow; or, always legal, [`rest_to_rest`] when the robot stands.
 ///
 /// # Errors
 /// Those of [`slow_to_stop`] and of [`rest_to_rest`].
@@ -37,28 +37,27 @@ pub fn connect(
     // Legal under every limit, those of torque and tool too: what the others begin with, and what is left without them.
     let afterwards = rest_to_rest(robot, &stopped, goal, options)?;
     let from = running.state_at(at_s);
-    let mut best: Option<JointTrajectory> = None;
-    let shorter =
-        |duration: f64, best: &Option<JointTrajectory>| best.as_ref().is_none_or(|b| duration < b.duration_s());
+    let mut best = stop.switched(stop.duration_s(), &afterwards);
     let sampling = Sampling { rate_hz: options.rate_hz, joint_names: robot.chain.joint_names() };
     let over = Overlay { stop: &stop, goal, way: goal - &stopped, least_duration: afterwards.duration_s() };
-    let longest = stop.duration_s() + over.least_duration;
-    if let Some(duration) = shortest_quintic(&bounds, &from, goal, longest) {
+    if let Some(duration) = shortest_quintic(&bounds, &from, goal, best.duration_s()) {
         let direct = sampled_quintic(&from, goal, duration, &sampling)?;
-        if against_from(&bounds, &direct, Some(&from)).audit.limits_ok {
-            best = Some(direct);
+        let shorter = direct.duration_s() < best.duration_s();
+        if shorter && against_from(&bounds, &direct, Some(&from)).audit.limits_ok {
+            best = direct;
         }
     }
     for (begin, duration) in over.attempts() {
-        if shorter(stop.points[begin].time_s + duration, &best) {
-            let overlaid = over.trajectory(begin, duration, &sampling)?;
-            if is_legal(&bounds, &overlaid) && against_from(&bounds, &overlaid, Some(&from)).audit.limits_ok {
-                best = Some(overlaid);
-                break;
-            }
+        if stop.points[begin].time_s + duration >= best.duration_s() {
+            break;
+        }
+        let overlaid = over.trajectory(begin, duration, &sampling)?;
+        if is_legal(&bounds, &overlaid) && against_from(&bounds, &overlaid, Some(&from)).audit.limits_ok {
+            best = overlaid;
+            break;
         }
     }
-    Ok(best.unwrap_or_else(|| stop.switched(stop.duration_s(), &afterwards)))
+    Ok(best)
 }
 
 /// Durations that are tried for a single quintic grow by this factor.
