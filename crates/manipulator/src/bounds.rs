@@ -6,7 +6,7 @@ use crate::audit::{Audit, AuditRules};
 use crate::chain::Chain;
 use crate::dynamics::Dynamics;
 use crate::error::ManipulatorError;
-use crate::holding::holding_torque;
+use crate::holding::SlowTorque;
 use crate::quintic::Quintic;
 use crate::robot::{Limits, Robot};
 use crate::trajectory::JointTrajectory;
@@ -177,14 +177,14 @@ impl Sampler<'_> {
     }
 
     /// Slower by r, the part of the torque that moves the links falls by r² while what holds them stays; damping, which falls by r, is
-    /// left to the next attempt. Infinite where holding alone takes too much.
+    /// left to the next attempt. Infinite where the slowest motion takes too much.
     fn torque_slowdown(&self, dynamics: &Dynamics) -> f64 {
-        let holding = holding_torque(dynamics, &self.q);
-        let joints = self.torque.iter().zip(&holding).zip(&self.bounds.limits.effort).zip(dynamics.drives());
+        let slow = SlowTorque::new(dynamics, &self.q, &self.rates).moving;
+        let joints = self.torque.iter().zip(&slow).zip(&self.bounds.limits.effort);
         joints
-            .filter(|(((torque, _), effort), _)| torque.abs() > **effort)
-            .map(|(((torque, holding), effort), drive)| {
-                let still = holding * torque.signum() + drive.friction_n_m;
+            .filter(|((torque, _), effort)| torque.abs() > **effort)
+            .map(|((torque, slow), effort)| {
+                let still = slow * torque.signum();
                 if still < *effort { ((torque.abs() - still) / (effort - still)).sqrt() } else { f64::INFINITY }
             })
             .fold(1.0, f64::max)

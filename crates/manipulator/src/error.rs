@@ -226,11 +226,12 @@ pub enum ManipulatorError {
         /// What it says.
         reason: String,
     },
-    /// A joint cannot even hold the arm still.
+    /// A joint cannot even hold the arm still, or move it however slowly.
     #[error(
-        "joint {joint:?} needs {needed:.2} N·m to hold the arm still {}, {} N·m more than its limit",
+        "joint {joint:?} needs {needed:.2} {unit} to {} {}, {}",
+        if *moving { "move the arm against gravity and dry friction" } else { "hold the arm still" },
         pose.map_or_else(|| format!("at {configuration:.2?}"), |pose| format!("near pose {pose}")),
-        figure(needed - effort)
+        if needed > effort { format!("{} {unit} more than its limit", figure(needed - effort)) } else { "all that its limit allows".into() }
     )]
     HoldingTorque {
         /// The joint.
@@ -239,10 +240,14 @@ pub enum ManipulatorError {
         pose: Option<usize>,
         /// Positions of the joints there, in rad or m.
         configuration: Vec<f64>,
-        /// Torque against gravity and dry friction, in N·m (N for prismatic joints).
+        /// Whether the arm can be held there, and dry friction makes the difference.
+        moving: bool,
+        /// Torque against gravity, and against dry friction where that makes the difference.
         needed: f64,
         /// Its limit.
         effort: f64,
+        /// N·m, or N for a prismatic joint.
+        unit: &'static str,
     },
     /// The limits do not let the tool keep a constant speed.
     #[error(

@@ -6,7 +6,7 @@ mod support;
 use manipulator::nalgebra::{DVector, Vector3};
 use manipulator::{
     AuditRules, JointLimits, JointPath, ManipulatorError, PathOptions, Robot, TimedPath, TimingOptions, audit_under,
-    follow, rest_to_rest, time_path,
+    follow, time_path,
 };
 use support::curves::{spline, writing};
 use support::{Random, random_path, ur5e};
@@ -118,68 +118,6 @@ fn without_jerk_limits_motion_is_faster_and_the_audit_says_why() {
     // The averaging over a step and the audit's corrections: 0.01 s and a few parts in a thousand.
     let excess = fast.trajectory.duration_s() / fast.second_order_duration_s;
     assert!(excess > 1.0 - 1e-3 && excess < 1.02, "{excess}");
-}
-
-#[test]
-fn torque_limits_hold_where_they_are_what_limits() {
-    let mut robot = Robot::shipped("panda").unwrap();
-    let mut random = Random(83);
-    let path = random_path(&robot, 0.5, 40, &mut random);
-    robot.limits.lower.fill(-10.0);
-    robot.limits.upper.fill(10.0);
-    // Without gravity, so that the least effort is a matter of speed alone.
-    let yaml = include_str!("../../../config/robots/panda.yaml");
-    robot.dynamics = Robot::shipped_with("panda", &format!("gravity_m_s2: [0, 0, 0]\n{yaml}")).unwrap().dynamics;
-    for limits in [JointLimits::Jerk, JointLimits::Acceleration] {
-        let options = TimingOptions { limits, ..TimingOptions::default() };
-        robot.limits.effort.fill(1e3);
-        let strong = time_path(&robot, &path, &options).unwrap();
-        let peak = 1e3 * strong.audit.max_ratio.torque.unwrap();
-        robot.limits.effort.fill(0.5 * peak);
-        let weak = time_path(&robot, &path, &options).unwrap();
-        let ratio = weak.audit.max_ratio;
-        assert!(weak.audit.limits_ok && ratio.torque.unwrap() <= 1.0 && ratio.torque.unwrap() > 0.95, "{ratio:?}");
-        // Half the torque: at most √2 slower where all of it moves links, which a uniform slowdown would cost.
-        let slower = weak.trajectory.duration_s() / strong.trajectory.duration_s();
-        assert!(slower > 1.0 && slower < 1.3, "{slower}");
-        let ignored = time_path(&robot, &path, &TimingOptions { torque: false, ..options }).unwrap();
-        assert!(ignored.audit.limits_ok && ignored.audit.max_ratio.torque.unwrap() > 1.5);
-    }
-}
-
-#[test]
-fn an_arm_too_weak_to_hold_itself_is_refused_by_name() {
-    let mut robot = ur5e();
-    robot.limits.effort[1] = 5.0;
-    let mut random = Random(89);
-    let path = random_path(&robot, 0.5, 40, &mut random);
-    let refused = time_path(&robot, &path, &TimingOptions::default()).unwrap_err();
-    assert!(refused.to_string().contains("hold the arm still near pose"), "{refused}");
-    let path_place = assert_too_weak(&robot, refused);
-    let poses = path.pose_parameters();
-    let nearest = &path.at(poses[path_place.0.unwrap()])[0];
-    let spacing = poses.windows(2).map(|pair| (&path.at(pair[1])[0] - &path.at(pair[0])[0]).amax()).fold(0.0, f64::max);
-    assert!((nearest - &path_place.1).amax() <= spacing, "the pose is not the nearest");
-
-    let (from, to) = (DVector::zeros(6), DVector::from_element(6, -0.1));
-    let refused = rest_to_rest(&robot, &from, &to, &TimingOptions::default()).unwrap_err();
-    let message = refused.to_string();
-    assert!(message.contains("\"shoulder_lift_joint\" needs") && message.contains("more than its limit"), "{message}");
-    let (pose, at) = assert_too_weak(&robot, refused);
-    assert!(pose.is_none() && (0..6).all(|j| at[j] <= 1e-12 && at[j] >= -0.1 - 1e-12), "{at}");
-}
-
-/// The pose and the configuration that a refusal names; the joint does need that much there, by the dynamics themselves.
-fn assert_too_weak(robot: &Robot, refused: ManipulatorError) -> (Option<usize>, DVector<f64>) {
-    let ManipulatorError::HoldingTorque { joint, pose, configuration, needed, effort } = refused else {
-        panic!("{refused}")
-    };
-    assert!(joint == "shoulder_lift_joint" && needed > 5.0 && effort == 5.0);
-    let mut torque = [0.0; 6];
-    robot.dynamics.as_ref().unwrap().torque(&configuration, &[0.0; 6], &[0.0; 6], &mut torque);
-    // The same function at the same place; friction of this arm is none.
-    assert_eq!(torque[1].abs(), needed);
-    (pose, DVector::from_vec(configuration))
 }
 
 #[test]
