@@ -251,11 +251,15 @@ pub enum ManipulatorError {
     },
     /// The limits do not let the tool keep a constant speed.
     #[error(
-        "a constant tool speed of {wanted_m_s:.4} m/s cannot be held near pose {pose}: the limits allow {greatest_m_s:.4} m/s there"
+        "a constant tool speed of {wanted_m_s:.4} m/s cannot be held {}",
+        pose.map_or_else(
+            || format!("between the ramps up and down, which fill the path: {greatest_m_s:.4} m/s can"),
+            |pose| format!("near pose {pose}: the limits allow {greatest_m_s:.4} m/s there"),
+        )
     )]
     ConstantSpeed {
-        /// Index of the pose at or before the narrowest place.
-        pose: usize,
+        /// Index of the pose at or before the narrowest place; none where the path is too short.
+        pose: Option<usize>,
         /// As asked for.
         wanted_m_s: f64,
         /// What can be held from ramp to ramp.
@@ -314,9 +318,8 @@ impl ManipulatorError {
             | Self::JointLimit { pose, .. }
             | Self::Singular { pose, .. }
             | Self::Jump { pose, .. }
-            | Self::ConstantSpeed { pose, .. }
             | Self::PathTolerance { pose, .. } => Some(*pose),
-            Self::HoldingTorque { pose, .. } => *pose,
+            Self::HoldingTorque { pose, .. } | Self::ConstantSpeed { pose, .. } => *pose,
             _ => None,
         }
     }

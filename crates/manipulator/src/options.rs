@@ -40,7 +40,7 @@ pub struct TimingOptions {
     /// Greatest acceleration of the tool frame's origin in m/s².
     pub tool_acceleration_m_s2: Option<f64>,
     /// The speed of the tool frame's origin in m/s between a ramp up at the start and a ramp down at the end, within 1 %: for welding
-    /// or gluing. Where the limits do not allow it the path is refused.
+    /// or gluing. It is held for longer than ramps that meet would touch it. Where the limits do not allow it the path is refused.
     pub constant_tool_speed_m_s: Option<f64>,
 }
 
