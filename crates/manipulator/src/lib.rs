@@ -69,6 +69,7 @@ mod tightening;
 mod timing;
 mod tolerance;
 mod trajectory;
+mod uncorrected;
 mod urdf;
 
 pub use audit::{Audit, AuditRules, MaxRatio, audit, audit_from, audit_under};
@@ -90,3 +91,4 @@ pub use robot::{Limits, Robot};
 pub use slowing::slow_to_stop;
 pub use timing::{TimedPath, least_duration_s, time_path};
 pub use trajectory::{JointPoint, JointTrajectory};
+pub use uncorrected::uncorrected_duration_s;

@@ -6,7 +6,7 @@ mod support;
 use manipulator::nalgebra::DVector;
 use manipulator::{
     AuditRules, EndDerivatives, JointPath, JointTrajectory, ManipulatorError, PathOptions, Robot, TimingOptions, audit,
-    audit_under, follow, least_duration_s, rest_to_rest, time_path,
+    audit_under, follow, least_duration_s, rest_to_rest, time_path, uncorrected_duration_s,
 };
 use support::curves::{spline, writing};
 use support::{Random, random_configuration, random_path, ur5e};
@@ -72,9 +72,13 @@ fn random_paths_become_executable_and_nearly_time_optimal() {
         let ratio = timed.trajectory.duration_s() / timed.second_order_duration_s;
         // Reaching 5 rad/s² at 50 rad/s³ costs 0.1 s at each reversal; measured on these paths: 1.03 to 1.12.
         assert!(ratio > 1.0 && ratio < 1.25, "path {i}: {ratio} of the duration without jerk limits");
-        // What the audit corrects between gridpoints is to cost a few per cent; measured on these paths: at most 1.015.
-        let corrected = timed.trajectory.duration_s() / timed.shortest_solution_duration_s;
-        assert!((1.0..1.06).contains(&corrected), "path {i}: {corrected} of the shortest solution");
+        // What the audit corrects between gridpoints is to cost a few per cent. Both are solved to 1e-3.
+        if i % 4 == 0 {
+            let uncorrected = uncorrected_duration_s(&robot, &path, &TimingOptions::default()).unwrap();
+            let cost = timed.trajectory.duration_s() / uncorrected;
+            println!("path {i}: {cost} of the uncorrected solution");
+            assert!((0.999..1.06).contains(&cost), "path {i}: {cost} of the uncorrected solution");
+        }
         // Time-optimal means that some limit is nearly reached somewhere.
         let peaks = timed.audit.max_ratio;
         assert!(peaks.velocity.max(peaks.acceleration).max(peaks.jerk) > 0.97);
