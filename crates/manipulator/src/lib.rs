@@ -39,6 +39,7 @@ mod continuation;
 mod dynamics;
 mod error;
 mod excess;
+mod executed;
 mod faults;
 mod follow;
 mod gridpoints;

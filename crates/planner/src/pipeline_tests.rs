@@ -25,6 +25,26 @@ fn a_trajectory_that_fails_its_audit_is_withheld() {
     assert!(passed_audit(&robot, &Config::default(), &legal, None).unwrap().limits_ok);
 }
 
+/// At few points a second the quintics between them leave a path that is to be kept to a micrometre; the sentence says what helps.
+#[test]
+fn a_tool_that_strays_between_points_is_refused() {
+    let robot = Robot::shipped("ur5e").unwrap();
+    let home = robot.chain.forward(&robot.preferred);
+    let pose = |i: usize| {
+        let angle = 0.3 * i as f64;
+        let offset = manipulator::nalgebra::Translation3::new(0.1 * angle.sin(), 0.1 * angle.cos() - 0.1, 0.0);
+        offset * home
+    };
+    let request = Request { poses: (0..12).map(pose).collect(), ..Request::default() };
+    let mut config = Config::default();
+    config.path.tolerance_m = 1e-6;
+    assert!(plan(&robot, &config, &request).is_ok());
+    config.timing.rate_hz = 10.0;
+    let refused = plan(&robot, &config, &request).unwrap_err();
+    assert!(matches!(refused, Refusal::Strays { error_m, .. } if error_m > 1e-6), "{refused}");
+    assert!(refused.to_string().contains("raise rate_hz"), "{refused}");
+}
+
 /// A pose that the tool is not at, in position or in orientation, is named.
 #[test]
 fn a_pose_that_is_missed_is_refused_by_its_index() {

@@ -129,6 +129,18 @@ pub enum Refusal {
         /// Angle between the orientations in rad.
         error_rad: f64,
     },
+    /// Between the published points the executed tool leaves the path by more than the tolerance.
+    #[error(
+        "between points at {rate_hz} a second the executed tool would leave the path by {error_m:.2e} m and {error_rad:.2e} rad, more than the tolerance: raise rate_hz or the tolerance"
+    )]
+    Strays {
+        /// In m.
+        error_m: f64,
+        /// In rad.
+        error_rad: f64,
+        /// Published points per second.
+        rate_hz: f64,
+    },
     /// The whole trajectory, approach included, does not pass its audit; it is withheld.
     #[error("the trajectory does not pass its audit and is withheld: {}", audit.faults(rules))]
     Limits {

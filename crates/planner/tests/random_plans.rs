@@ -12,7 +12,7 @@ use planner::manipulator::{Audit, ManipulatorError, Robot, audit};
 use planner::reorder::{Options, Topology, order_poses};
 use planner::se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, centripetal_knots};
 use planner::{Plan, Refusal, plan};
-use support::closing::loop_fault;
+use support::closing::{between_poses_fault, loop_fault};
 use support::follower::{End, follow_from_many};
 use support::pose_sets::PoseSet;
 use support::random::Random;
@@ -143,6 +143,9 @@ fn fault_of(robot: &Robot, set: &PoseSet, plan: &Plan) -> Option<String> {
     };
     let poses = &set.request.poses;
     if let Some(fault) = poses.iter().zip(&plan.pose_times_s).find_map(|(pose, &time_s)| off(pose, time_s)) {
+        return Some(fault);
+    }
+    if let Some(fault) = between_poses_fault(robot, plan) {
         return Some(fault);
     }
     if !set.closed {

@@ -1,9 +1,9 @@
-//! Whether a plan around a closed curve comes back as it set out.
+//! Whether a plan's tool stays on the curve between the poses, and comes back on a closed one as it set out.
 
 use planner::Plan;
 use planner::manipulator::nalgebra::DVector;
 use planner::manipulator::{Robot, follow};
-use planner::se3_geom::{Manifold, Se3};
+use planner::se3_geom::{Manifold, Se3, So3};
 
 use super::follower::least_singular_value;
 use super::pose_sets::PoseSet;
@@ -14,6 +14,39 @@ const AT_SAMPLE: f64 = 1e-9;
 /// What does not close, if anything: the curve, the joint path along it, the executed trajectory.
 pub(crate) fn loop_fault(robot: &Robot, set: &PoseSet, plan: &Plan) -> Option<String> {
     curve_fault(plan).or_else(|| path_fault(robot, set, plan)).or_else(|| execution_fault(robot, plan))
+}
+
+/// Where between the poses the executed tool is farther from the curve than 0.2 mm and 2 mrad, twice the path tolerance.
+pub(crate) fn between_poses_fault(robot: &Robot, plan: &Plan) -> Option<String> {
+    const PLACES: usize = 5;
+    let (curve, executed) = (&plan.spline, &plan.trajectory);
+    let mut times_s: Vec<f64> = plan.ordering.distinct().iter().map(|&i| plan.pose_times_s[i]).collect();
+    if times_s.len() < curve.knots().len() {
+        times_s.push(executed.duration_s());
+    }
+    let segments = times_s.windows(2).zip(curve.knots().windows(2));
+    let places = segments.flat_map(|(times, knots)| {
+        (1..=PLACES).map(move |k| {
+            let time_s = times[0] + (times[1] - times[0]) * k as f64 / (PLACES + 1) as f64;
+            (time_s, knots[0], knots[1])
+        })
+    });
+    places.into_iter().find_map(|(time_s, from, to)| {
+        let tool = robot.chain.forward(&executed.at(time_s)[0]);
+        let off = |s: f64| {
+            let pose = curve.pose(s);
+            ((tool.translation.vector - pose.translation.vector).norm(), So3.distance(&tool.rotation, &pose.rotation))
+        };
+        // The nearest place between the two poses, a rad counting as the tolerances do: a tenth of a metre.
+        let away = |s: f64| off(s).0 + 0.1 * off(s).1;
+        let (mut low, mut high) = (from, to);
+        for _ in 0..50 {
+            let [a, b] = [1.0 / 3.0, 2.0 / 3.0].map(|part| low + part * (high - low));
+            if away(a) < away(b) { high = b } else { low = a }
+        }
+        let (m, rad) = off(0.5 * (low + high));
+        (m > 2e-4 || rad > 2e-3).then(|| format!("{m:.1e} m and {rad:.1e} rad off the curve at {time_s:.3} s"))
+    })
 }
 
 fn curve_fault(plan: &Plan) -> Option<String> {
