@@ -52,7 +52,7 @@ fn assert_sound(robot: &Robot, curve: &PoseSpline, path: &JointPath, options: &P
     }
 }
 
-/// The tolerance is a proven bound: a hundredth of the default holds on the dense grid as well.
+/// The tolerance bounds the tool everywhere: a hundredth of the default holds on the dense grid as well.
 #[test]
 fn a_tight_tolerance_holds_between_samples_on_every_arm() {
     let options = PathOptions { tolerance_m: 1e-6, tolerance_rad: 1e-5, ..PathOptions::default() };
