@@ -162,7 +162,7 @@ pub enum ManipulatorError {
     },
     /// The way to a pose leads over a joint limit on every branch tried.
     #[error(
-        "on the way to pose {pose} joint {joint:?} would have to go {}", beyond(*value, *lower, *upper)
+        "on the way to pose {pose} joint {joint:?} would have to go to {}", beyond(*value, *lower, *upper)
     )]
     JointLimit {
         /// Index of the pose.
@@ -266,7 +266,7 @@ pub enum ManipulatorError {
         greatest_m_s: f64,
     },
     /// A configuration is beyond a position limit.
-    #[error("{what}: {joint} is {}", beyond(*value, *lower, *upper))]
+    #[error("{what}: {joint} is at {}", beyond(*value, *lower, *upper))]
     BeyondLimits {
         /// What the configuration is.
         what: &'static str,

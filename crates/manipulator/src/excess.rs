@@ -1,10 +1,10 @@
 //! By how much a limit is broken, in digits that show it.
 
-/// By how much `value` is beyond which of its limits, in words.
+/// Where `value` is, and by how much beyond which of its limits, in words.
 pub(crate) fn beyond(value: f64, lower: f64, upper: f64) -> String {
     let (by, which, limit) =
         if value < lower { (lower - value, "lower", lower) } else { (value - upper, "upper", upper) };
-    format!("{} rad (or m) beyond its {which} limit of {limit:.4}", figure(by))
+    format!("{value:.4}, {} rad (or m) beyond its {which} limit of {limit:.4}", figure(by))
 }
 
 /// Four decimals, or as many as it takes to tell an excess from nothing.

@@ -261,8 +261,13 @@ fn whole_turns(
         let wanted = ((reference[joint] - samples[0].q[joint]) / turn).round();
         turns[joint] = turn * wanted.max(fewest).min(greatest);
         if fewest > greatest {
-            let beyond = |sample: &&Sample| !(lower..=upper).contains(&(sample.q[joint] + turns[joint]));
-            let at = samples.iter().find(beyond).unwrap_or(&samples[0]);
+            // The farthest beyond either limit: another may be beyond one by rounding alone.
+            let beyond = |sample: &Sample| {
+                let q = sample.q[joint] + turns[joint];
+                (lower - q).max(q - upper)
+            };
+            let worst = samples.iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
+            let at = worst.unwrap_or(&samples[0]);
             let error = ManipulatorError::JointLimit {
                 pose: tracker.pose_after(at.s),
                 joint: robot.chain.joint_names()[joint].clone(),

@@ -179,7 +179,8 @@ fn a_joint_hardly_beyond_its_limits_is_told_by_how_much() {
         let mut q = robot.preferred.clone();
         q[2] = robot.limits.upper[2] + by;
         let message = robot.check_within_limits("the start", &q).unwrap_err().to_string();
-        let sentence = format!("the start: elbow_joint is {words} rad (or m) beyond its upper limit of 1.5708");
+        let sentence =
+            format!("the start: elbow_joint is at {:.4}, {words} rad (or m) beyond its upper limit of 1.5708", q[2]);
         assert_eq!(message, sentence);
     }
 }
