@@ -94,10 +94,10 @@ impl Dynamics {
             }
         }
         let tool_from_base = chain.home().inverse();
-        let joints = chain.screws().iter().zip(links).zip(drives);
+        let joints = chain.screws().iter().enumerate().zip(links).zip(drives);
         let joints = joints
-            .map(|((&screw, link), &drive)| {
-                let is_rotary = screw.angular != Vector3::zeros();
+            .map(|(((i, &screw), link), &drive)| {
+                let is_rotary = chain.is_rotary(i);
                 Joint { screw, is_rotary, link: link.in_parent(&tool_from_base), drive }
             })
             .collect();

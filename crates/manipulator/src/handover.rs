@@ -60,12 +60,14 @@ pub fn connect(
     Ok(best)
 }
 
-/// Durations that are tried for a single quintic grow by this factor.
+/// Durations that are tried for a single quintic grow by this factor: what is found is longer than the shortest by 2 % at most.
 const FINER: f64 = 1.02;
+/// The first of them, in s: five published steps at 100 a second, sooner than which no controller follows.
+const SHORTEST: f64 = 0.05;
 
 /// The least duration up to `longest` for which the quintic from a state to rest at `goal` keeps the limits.
 fn shortest_quintic(bounds: &Bounds<'_>, from: &JointPoint, goal: &DVector<f64>, longest: f64) -> Option<f64> {
-    let mut duration = 0.05;
+    let mut duration = SHORTEST;
     while duration < longest {
         let rest = vec![0.0; goal.len()];
         let to = JointPoint {
@@ -132,9 +134,11 @@ struct Overlay<'a> {
     least_duration: f64,
 }
 
-/// How many beginnings of the straight move are tried over the stop.
+/// How many beginnings of the straight move are tried over the stop: each costs an audit, and twice as many would gain a sixteenth of
+/// the stop at most.
 const BEGINNINGS: usize = 8;
-/// How much slower than by itself the straight move may be.
+/// How much slower than by itself the straight move may be, in steps of about a fifth. At 2.6 it takes less than a sixth of each
+/// acceleration limit; beyond that, moving after the stop is hardly longer.
 const STRETCHES: [f64; 6] = [1.0, 1.15, 1.35, 1.6, 2.0, 2.6];
 
 impl Overlay<'_> {
