@@ -1,7 +1,7 @@
 //! Everything that can go wrong between a robot description and a legal trajectory.
 
 use crate::audit::{Audit, AuditRules};
-use crate::excess::{beyond, figure};
+use crate::excess::{beyond, too_weak};
 use crate::reach::OutOfReach;
 
 /// Why there is no robot, no joint path or no trajectory. Pose indices count from 0 along the curve.
@@ -227,12 +227,7 @@ pub enum ManipulatorError {
         reason: String,
     },
     /// A joint cannot even hold the arm still, or move it however slowly.
-    #[error(
-        "joint {joint:?} needs {needed:.2} {unit} to {} {}, {}",
-        if *moving { "move the arm against gravity and dry friction" } else { "hold the arm still" },
-        pose.map_or_else(|| format!("at {configuration:.2?}"), |pose| format!("near pose {pose}")),
-        if needed > effort { format!("{} {unit} more than its limit", figure(needed - effort)) } else { "all that its limit allows".into() }
-    )]
+    #[error("joint {joint:?} needs {}", too_weak(*pose, configuration, *moving, [*needed, *effort], unit))]
     HoldingTorque {
         /// The joint.
         joint: String,
@@ -308,32 +303,3 @@ pub enum ManipulatorError {
 }
 
 pub(crate) type Result<T> = std::result::Result<T, ManipulatorError>;
-
-impl ManipulatorError {
-    /// Index, along the curve, of the pose that the error is about.
-    pub fn pose(&self) -> Option<usize> {
-        match self {
-            Self::Unreachable(OutOfReach { misses, .. }) => misses.first().map(|miss| miss.pose),
-            Self::UnreachableBetween { pose, .. }
-            | Self::JointLimit { pose, .. }
-            | Self::Singular { pose, .. }
-            | Self::Jump { pose, .. }
-            | Self::PathTolerance { pose, .. } => Some(*pose),
-            Self::HoldingTorque { pose, .. } | Self::ConstantSpeed { pose, .. } => *pose,
-            _ => None,
-        }
-    }
-
-    /// The same about another pose.
-    pub(crate) fn at_pose(mut self, other: usize) -> Self {
-        match &mut self {
-            Self::UnreachableBetween { pose, .. }
-            | Self::JointLimit { pose, .. }
-            | Self::Singular { pose, .. }
-            | Self::Jump { pose, .. }
-            | Self::PathTolerance { pose, .. } => *pose = other,
-            _ => {}
-        }
-        self
-    }
-}

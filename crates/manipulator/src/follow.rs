@@ -261,13 +261,12 @@ fn whole_turns(
         let wanted = ((reference[joint] - samples[0].q[joint]) / turn).round();
         turns[joint] = turn * wanted.max(fewest).min(greatest);
         if fewest > greatest {
-            // The farthest beyond either limit: another may be beyond one by rounding alone.
-            let beyond = |sample: &Sample| {
+            // Beyond by more than rounding, which the turns allow for: there is one below, as they are as many as fit above.
+            let beyond = |sample: &&Sample| {
                 let q = sample.q[joint] + turns[joint];
-                (lower - q).max(q - upper)
+                q < lower - 1e-9 || q > upper + 1e-9
             };
-            let worst = samples.iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
-            let at = worst.unwrap_or(&samples[0]);
+            let at = samples.iter().find(beyond).unwrap_or(&samples[0]);
             let error = ManipulatorError::JointLimit {
                 pose: tracker.pose_after(at.s),
                 joint: robot.chain.joint_names()[joint].clone(),

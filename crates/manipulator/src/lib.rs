@@ -38,6 +38,7 @@ mod constant_speed;
 mod continuation;
 mod dynamics;
 mod error;
+mod error_places;
 mod excess;
 mod executed;
 mod faults;

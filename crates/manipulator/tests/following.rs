@@ -11,7 +11,7 @@ use manipulator::{
 };
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, Twist, centripetal_knots, pose_from_xyzw};
 use support::curves::{spline, writing};
-use support::{Random, random_configuration, ur5e};
+use support::{Random, mounted_ur5e, random_configuration, ur5e};
 
 fn off(a: &Pose, b: &Pose) -> (f64, f64) {
     ((a.translation.vector - b.translation.vector).norm(), So3.distance(&a.rotation, &b.rotation))
@@ -154,15 +154,7 @@ fn the_path_starts_with_the_second_derivative_of_the_curve() {
 /// What the arm does must not depend on where the base stands: moved with the poses, it makes the same joint path.
 #[test]
 fn moving_base_and_poses_together_changes_nothing() {
-    let g = pose_from_xyzw([0.4, -0.3, 0.9], [0.5, 0.5, -0.5, 0.5]).unwrap();
-    let (roll, pitch, yaw) = g.rotation.euler_angles();
-    let mount = format!(
-        r#"<link name="room"/><joint name="mount" type="fixed"><origin xyz="0.4 -0.3 0.9" rpy="{roll} {pitch} {yaw}"/>
-           <parent link="room"/><child link="base_link"/></joint><link name="base_link"/>"#
-    );
-    let urdf = include_str!("../../../config/robots/ur5e.urdf").replace(r#"<link name="base_link"/>"#, &mount);
-    let settings = include_str!("../../../config/robots/ur5e.yaml").replace("base_link", "room");
-    let (mounted, robot) = (Robot::from_urdf(&urdf, &settings).unwrap(), ur5e());
+    let ((g, mounted), robot) = (mounted_ur5e(), ur5e());
     let poses = writing(&robot, 40);
     let moved: Vec<Pose> = poses.iter().map(|pose| g * pose).collect();
     let [path, moved_path] = [(&robot, poses), (&mounted, moved)]
