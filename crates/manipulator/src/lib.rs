@@ -64,6 +64,7 @@ mod robot;
 mod route;
 mod rows;
 mod sampling;
+mod settings_keys;
 mod slowing;
 mod speed_profile;
 mod stations;

@@ -58,6 +58,20 @@ fn limits_in_settings_of_zero_negative_missing_and_no_number_are_refused_by_name
     }
 }
 
+/// The last of two would win, and metres would count as radians.
+#[test]
+fn a_joint_that_is_there_twice_and_figures_in_other_units_are_refused_by_name() {
+    let twice = format!("{SETTINGS}\n  elbow_joint: {{ acceleration_rad_s2: 50.0, jerk_rad_s3: 500.0 }}\n");
+    let is_last = SETTINGS.trim_end().lines().last().unwrap().starts_with("  wrist_3_joint");
+    assert!(is_last, "the joints are no longer the last of the settings");
+    assert_refused(URDF, &twice, &["elbow_joint", "twice"]);
+    for (key, other) in
+        [("acceleration_rad_s2", "acceleration_m_s2"), ("jerk_rad_s3", "jerk_m_s3"), ("preferred_rad", "preferred_m")]
+    {
+        assert_refused(URDF, &SETTINGS.replace(key, other), &["turns", key, other]);
+    }
+}
+
 #[test]
 fn limits_in_a_urdf_of_zero_negative_missing_and_no_number_are_refused_by_name() {
     assert_eq!(URDF.matches(STATED).count(), 1);

@@ -226,6 +226,7 @@ fn what_is_no_serial_chain_is_refused_by_name() {
         (good.clone(), &MIXED_SETTINGS.replace("hand", "foot"), vec!["foot"]),
         (good.clone(), &MIXED_SETTINGS.replace("base_frame: world", "base_frame: tip"), vec!["tip", "hand"]),
         (good.clone(), &MIXED_SETTINGS.replace("jerk_m_s3", "jolt"), vec!["jolt"]),
+        (good.clone(), &MIXED_SETTINGS.replace("jerk_m_s3", "jerk_rad_s3"), vec!["slide", "slides", "jerk_m_s3"]),
         (good.clone(), &MIXED_SETTINGS.replace(", jerk_m_s3: 10.0", ""), vec!["jerk"]),
         (good.clone(), &MIXED_SETTINGS.replace("slide", "slid"), vec!["slid"]),
         (good.clone(), &MIXED_SETTINGS.replace("jerk_m_s3: 10.0", "jerk_m_s3: -1.0"), vec!["slide", "jerk", "-1"]),
