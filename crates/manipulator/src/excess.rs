@@ -4,7 +4,8 @@
 pub(crate) fn beyond(value: f64, lower: f64, upper: f64) -> String {
     let (by, which, limit) =
         if value < lower { (lower - value, "lower", lower) } else { (value - upper, "upper", upper) };
-    format!("{value:.4}, {} rad (or m) beyond its {which} limit of {limit:.4}", figure(by))
+    let at = if value.abs() < 1e6 { format!("{value:.4}") } else { format!("{value:.1e}") };
+    format!("{at}, {} rad (or m) beyond its {which} limit of {limit:.4}", figure(by))
 }
 
 /// What a joint lacks of the torque that it needs, both of which are given, to hold or to move the arm, in words.
