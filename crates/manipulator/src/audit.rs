@@ -62,6 +62,14 @@ pub struct AuditRules {
     pub tool_acceleration_m_s2: Option<f64>,
 }
 
+impl AuditRules {
+    /// Whether every limit of the tool is positive and finite.
+    fn are_valid(&self) -> bool {
+        let of_tool = [self.tool_speed_m_s, self.tool_acceleration_m_s2];
+        of_tool.into_iter().flatten().all(|limit| limit > 0.0 && limit.is_finite())
+    }
+}
+
 impl Default for AuditRules {
     /// Every limit of the joints, none of the tool.
     fn default() -> Self {
@@ -84,7 +92,7 @@ pub fn audit_from(robot: &Robot, trajectory: &JointTrajectory, from: &JointPoint
 /// Judges the trajectory that a controller would execute against the robot's limits, as far as the rules say; it must begin at rest, or
 /// in the state `from` as for [`audit_from`].
 pub fn audit_under(robot: &Robot, trajectory: &JointTrajectory, rules: AuditRules, from: Option<&JointPoint>) -> Audit {
-    if trajectory.joint_names == robot.chain.joint_names() && robot.check_limits().is_ok() {
+    if trajectory.joint_names == robot.chain.joint_names() && robot.check_limits().is_ok() && rules.are_valid() {
         return against_from(&Bounds::new(robot, robot.limits.clone(), rules), trajectory, from).audit;
     }
     // Judged joint by joint in order: under other names that would be somebody else's limits, and limits that are none allow everything.

@@ -2,10 +2,11 @@
 
 use nalgebra::DVector;
 
-use crate::audit::AuditRules;
+use crate::audit::{Audit, AuditRules};
 use crate::chain::Chain;
 use crate::dynamics::Dynamics;
-use crate::holding::holding_torque;
+use crate::error::ManipulatorError;
+use crate::holding::SlowTorque;
 use crate::quintic::Quintic;
 use crate::robot::{Limits, Robot};
 use crate::trajectory::JointTrajectory;
@@ -58,6 +59,11 @@ impl<'a> Bounds<'a> {
                 *ratio = if finite { ratio.max(peak(exact)) } else { f64::INFINITY };
             }
         }
+    }
+
+    /// Why a trajectory of which that was found is withheld.
+    pub(crate) fn not_met(&self, found: Audit) -> ManipulatorError {
+        ManipulatorError::LimitsNotMet { audit: Box::new(found), rules: Box::new(self.rules) }
     }
 
     pub(crate) fn samples_anything(&self) -> bool {
@@ -171,14 +177,14 @@ impl Sampler<'_> {
     }
 
     /// Slower by r, the part of the torque that moves the links falls by r² while what holds them stays; damping, which falls by r, is
-    /// left to the next attempt. Infinite where holding alone takes too much.
+    /// left to the next attempt. Infinite where the slowest motion takes too much.
     fn torque_slowdown(&self, dynamics: &Dynamics) -> f64 {
-        let holding = holding_torque(dynamics, &self.q);
-        let joints = self.torque.iter().zip(&holding).zip(&self.bounds.limits.effort).zip(dynamics.drives());
+        let slow = SlowTorque::new(dynamics, &self.q, &self.rates).moving;
+        let joints = self.torque.iter().zip(&slow).zip(&self.bounds.limits.effort);
         joints
-            .filter(|(((torque, _), effort), _)| torque.abs() > **effort)
-            .map(|(((torque, holding), effort), drive)| {
-                let still = holding * torque.signum() + drive.friction_n_m;
+            .filter(|((torque, _), effort)| torque.abs() > **effort)
+            .map(|((torque, slow), effort)| {
+                let still = slow * torque.signum();
                 if still < *effort { ((torque.abs() - still) / (effort - still)).sqrt() } else { f64::INFINITY }
             })
             .fold(1.0, f64::max)

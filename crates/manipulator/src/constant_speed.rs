@@ -12,6 +12,11 @@ use crate::trajectory::JointTrajectory;
 const TOLERANCE: f64 = 0.01;
 /// Part of what the limits allow at the narrowest place that is held in practice: the audit's corrections take the rest.
 const HELD: f64 = 0.95;
+/// Two ramps that just meet are within the tolerance of their peak for up to 0.14 of a ramp: their speeds differ from it by Jt²/2, and
+/// the ramps take at least 2√(v/J). A speed that is to count as held lasts longer.
+const TOUCHED: f64 = 0.2;
+/// Part of the peak of two ramps that meet which lasts long enough: under acceleration limits alone, for 2·0.15/0.85 of a ramp.
+const BELOW_PEAK: f64 = 0.85;
 /// Places between two published points at which the tool's speed is looked at.
 const PARTS: usize = 10;
 
@@ -30,20 +35,32 @@ pub(crate) fn check(
             bounds.chain.tool_motion(&q, &rates, &accelerations).0.norm()
         })
         .collect();
-    let fast = |speed: &f64| *speed >= (1.0 - TOLERANCE) * wanted;
-    let (Some(from), Some(to)) = (speeds.iter().position(fast), speeds.iter().rposition(fast)) else {
-        // The ramps fill the path.
-        let greatest = speeds.iter().copied().fold(0.0, f64::max);
-        return Err(ManipulatorError::ConstantSpeed { pose: 0, wanted_m_s: wanted, greatest_m_s: HELD * greatest });
+    let reached = |speed: f64| {
+        let fast = |other: &f64| *other >= speed;
+        speeds.iter().position(fast).zip(speeds.iter().rposition(fast))
     };
-    if speeds[from..=to].iter().all(|speed| (speed / wanted - 1.0).abs() <= TOLERANCE) {
+    let longer_than_touched = |&(from, to): &(usize, usize)| {
+        let shorter_ramp = from.min(speeds.len() - 1 - to) as f64;
+        (to - from) as f64 > TOUCHED * shorter_ramp
+    };
+    let held = reached((1.0 - TOLERANCE) * wanted).filter(longer_than_touched);
+    let off = |speed: &f64| (speed / wanted - 1.0).abs() > TOLERANCE;
+    if held.is_some_and(|(from, to)| !speeds[from..=to].iter().any(off)) {
         return Ok(());
     }
     let stretch = trajectory.duration_s() / profile.duration();
     let place = |k: usize| profile.at(k as f64 * step / stretch)[0];
-    let (s, greatest) = narrowest(bounds, path, place(from), place(to));
-    let pose = path.pose_parameters().partition_point(|&parameter| parameter <= s).max(1) - 1;
-    Err(ManipulatorError::ConstantSpeed { pose, wanted_m_s: wanted, greatest_m_s: HELD * greatest })
+    let below_peak = BELOW_PEAK * speeds.iter().copied().fold(0.0, f64::max);
+    let between = held.or_else(|| reached(below_peak)).filter(|(from, to)| from < to);
+    let narrowest = between.map(|(from, to)| narrowest(bounds, path, place(from), place(to)));
+    let (pose, greatest_m_s) = match narrowest {
+        Some((s, greatest)) if held.is_some() || HELD * greatest < below_peak => {
+            let pose = path.pose_parameters().partition_point(|&parameter| parameter <= s).max(1) - 1;
+            (Some(pose), HELD * greatest)
+        }
+        _ => (None, below_peak),
+    };
+    Err(ManipulatorError::ConstantSpeed { pose, wanted_m_s: wanted, greatest_m_s })
 }
 
 /// Where between two parameters the limits of joints and tool allow the least constant tool speed, and which.

@@ -61,6 +61,11 @@ struct LinkState {
 /// Chains of up to this many joints need no memory from the heap.
 const JOINTS_ON_STACK: usize = 16;
 
+/// The sign of a rate; 0 for what rounding makes of rest: positions of some rad, over steps of 0.1 ms at least, leave 1e-11 rad/s.
+pub(crate) fn direction(rate: f64) -> f64 {
+    if rate.abs() < 1e-9 { 0.0 } else { rate.signum() }
+}
+
 impl Dynamics {
     /// Dynamics of a chain whose joint i carries `links[i]` (up to the next joint), given in the base frame with all joints at zero,
     /// under `gravity_m_s2` in the base frame.
@@ -89,10 +94,10 @@ impl Dynamics {
             }
         }
         let tool_from_base = chain.home().inverse();
-        let joints = chain.screws().iter().zip(links).zip(drives);
+        let joints = chain.screws().iter().enumerate().zip(links).zip(drives);
         let joints = joints
-            .map(|((&screw, link), &drive)| {
-                let is_rotary = screw.angular != Vector3::zeros();
+            .map(|(((i, &screw), link), &drive)| {
+                let is_rotary = chain.is_rotary(i);
                 Joint { screw, is_rotary, link: link.in_parent(&tool_from_base), drive }
             })
             .collect();
@@ -115,9 +120,7 @@ impl Dynamics {
     pub fn torque(&self, q: &[f64], rates: &[f64], accelerations: &[f64], torque: &mut [f64]) {
         self.rigid_torque(q, rates, accelerations, torque);
         for (i, Joint { drive, .. }) in self.joints.iter().enumerate() {
-            // Not f64::signum, which takes rest for motion.
-            let direction = if rates[i] == 0.0 { 0.0 } else { rates[i].signum() };
-            torque[i] += drive.damping_n_m_s * rates[i] + drive.friction_n_m * direction;
+            torque[i] += drive.damping_n_m_s * rates[i] + drive.friction_n_m * direction(rates[i]);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Everything that can go wrong between a robot description and a legal trajectory.
 
-use crate::excess::{beyond, figure};
+use crate::audit::{Audit, AuditRules};
+use crate::excess::{beyond, too_weak};
 use crate::reach::OutOfReach;
 
 /// Why there is no robot, no joint path or no trajectory. Pose indices count from 0 along the curve.
@@ -105,6 +106,14 @@ pub enum ManipulatorError {
         /// Where.
         what: &'static str,
     },
+    /// A trajectory that this robot cannot execute.
+    #[error(
+        "{what} is none of this robot: it needs its joints in their order, finite numbers for each, and increasing times from 0"
+    )]
+    NotOfRobot {
+        /// What the trajectory is.
+        what: &'static str,
+    },
     /// An option is out of its range.
     #[error("option {name} is {value}, but must be {must_be}")]
     InvalidOption {
@@ -153,7 +162,7 @@ pub enum ManipulatorError {
     },
     /// The way to a pose leads over a joint limit on every branch tried.
     #[error(
-        "on the way to pose {pose} joint {joint:?} would have to go {}", beyond(*value, *lower, *upper)
+        "on the way to pose {pose} joint {joint:?} would have to go to {}", beyond(*value, *lower, *upper)
     )]
     JointLimit {
         /// Index of the pose.
@@ -217,12 +226,8 @@ pub enum ManipulatorError {
         /// What it says.
         reason: String,
     },
-    /// A joint cannot even hold the arm still.
-    #[error(
-        "joint {joint:?} needs {needed:.2} N·m to hold the arm still {}, {} N·m more than its limit",
-        pose.map_or_else(|| format!("at {configuration:.2?}"), |pose| format!("near pose {pose}")),
-        figure(needed - effort)
-    )]
+    /// A joint cannot even hold the arm still, or move it however slowly.
+    #[error("joint {joint:?} needs {}", too_weak(*pose, configuration, *moving, [*needed, *effort], unit))]
     HoldingTorque {
         /// The joint.
         joint: String,
@@ -230,25 +235,33 @@ pub enum ManipulatorError {
         pose: Option<usize>,
         /// Positions of the joints there, in rad or m.
         configuration: Vec<f64>,
-        /// Torque against gravity and dry friction, in N·m (N for prismatic joints).
+        /// Whether the arm can be held there, and dry friction makes the difference.
+        moving: bool,
+        /// Torque against gravity, and against dry friction where that makes the difference.
         needed: f64,
         /// Its limit.
         effort: f64,
+        /// N·m, or N for a prismatic joint.
+        unit: &'static str,
     },
     /// The limits do not let the tool keep a constant speed.
     #[error(
-        "a constant tool speed of {wanted_m_s:.4} m/s cannot be held near pose {pose}: the limits allow {greatest_m_s:.4} m/s there"
+        "a constant tool speed of {wanted_m_s:.4} m/s cannot be held {}",
+        pose.map_or_else(
+            || format!("between the ramps up and down, which fill the path: {greatest_m_s:.4} m/s can"),
+            |pose| format!("near pose {pose}: the limits allow {greatest_m_s:.4} m/s there"),
+        )
     )]
     ConstantSpeed {
-        /// Index of the pose at or before the narrowest place.
-        pose: usize,
+        /// Index of the pose at or before the narrowest place; none where the path is too short.
+        pose: Option<usize>,
         /// As asked for.
         wanted_m_s: f64,
         /// What can be held from ramp to ramp.
         greatest_m_s: f64,
     },
     /// A configuration is beyond a position limit.
-    #[error("{what}: {joint} is {}", beyond(*value, *lower, *upper))]
+    #[error("{what}: {joint} is at {}", beyond(*value, *lower, *upper))]
     BeyondLimits {
         /// What the configuration is.
         what: &'static str,
@@ -279,52 +292,14 @@ pub enum ManipulatorError {
         /// Duration of the running trajectory, in s.
         duration_s: f64,
     },
-    /// Slowing down did not make the trajectory legal; it is withheld.
-    #[error(
-        "the trajectory would break limits after every slowdown (velocity {velocity:.4}, acceleration {acceleration:.4}, jerk {jerk:.4}, torque {torque:.4} of the limit, position margin {position_margin:.2e}), so there is none"
-    )]
+    /// The last trajectory that was tried breaks limits; it is withheld.
+    #[error("no trajectory that keeps every limit was found; of the last one tried {}", audit.faults(rules))]
     LimitsNotMet {
-        /// Peak over limit.
-        velocity: f64,
-        /// Peak over limit.
-        acceleration: f64,
-        /// Peak over limit.
-        jerk: f64,
-        /// Peak over limit, 0 where it is not known.
-        torque: f64,
-        /// Least distance to a position limit, in rad or m; negative beyond it.
-        position_margin: f64,
+        /// What was found of it.
+        audit: Box<Audit>,
+        /// What it was to keep.
+        rules: Box<AuditRules>,
     },
 }
 
 pub(crate) type Result<T> = std::result::Result<T, ManipulatorError>;
-
-impl ManipulatorError {
-    /// Index, along the curve, of the pose that the error is about.
-    pub fn pose(&self) -> Option<usize> {
-        match self {
-            Self::Unreachable(OutOfReach { misses, .. }) => misses.first().map(|miss| miss.pose),
-            Self::UnreachableBetween { pose, .. }
-            | Self::JointLimit { pose, .. }
-            | Self::Singular { pose, .. }
-            | Self::Jump { pose, .. }
-            | Self::ConstantSpeed { pose, .. }
-            | Self::PathTolerance { pose, .. } => Some(*pose),
-            Self::HoldingTorque { pose, .. } => *pose,
-            _ => None,
-        }
-    }
-
-    /// The same about another pose.
-    pub(crate) fn at_pose(mut self, other: usize) -> Self {
-        match &mut self {
-            Self::UnreachableBetween { pose, .. }
-            | Self::JointLimit { pose, .. }
-            | Self::Singular { pose, .. }
-            | Self::Jump { pose, .. }
-            | Self::PathTolerance { pose, .. } => *pose = other,
-            _ => {}
-        }
-        self
-    }
-}

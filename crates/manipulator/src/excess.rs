@@ -1,10 +1,28 @@
 //! By how much a limit is broken, in digits that show it.
 
-/// By how much `value` is beyond which of its limits, in words.
+/// Where `value` is, and by how much beyond which of its limits, in words.
 pub(crate) fn beyond(value: f64, lower: f64, upper: f64) -> String {
     let (by, which, limit) =
         if value < lower { (lower - value, "lower", lower) } else { (value - upper, "upper", upper) };
-    format!("{} rad (or m) beyond its {which} limit of {limit:.4}", figure(by))
+    let at = if value.abs() < 1e6 { format!("{value:.4}") } else { format!("{value:.1e}") };
+    format!("{at}, {} rad (or m) beyond its {which} limit of {limit:.4}", figure(by))
+}
+
+/// What a joint lacks of the torque that it needs, both of which are given, to hold or to move the arm, in words.
+pub(crate) fn too_weak(
+    pose: Option<usize>,
+    configuration: &[f64],
+    moving: bool,
+    [needed, effort]: [f64; 2],
+    unit: &str,
+) -> String {
+    let what = if moving { "move the arm against gravity and dry friction" } else { "hold the arm still" };
+    let place = pose.map_or_else(|| format!("at {configuration:.2?}"), |pose| format!("near pose {pose}"));
+    let lacks = match needed > effort {
+        true => format!("{} {unit} more than its limit", figure(needed - effort)),
+        false => "all that its limit allows".into(),
+    };
+    format!("{needed:.2} {unit} to {what} {place}, {lacks}")
 }
 
 /// Four decimals, or as many as it takes to tell an excess from nothing.

@@ -97,6 +97,7 @@ pub fn follow(
     options.check()?;
     let reference = start.unwrap_or(&robot.preferred);
     robot.check_configuration("the start configuration", reference)?;
+    robot.check_configuration("the preferred configuration", &robot.preferred)?;
     let tracker = Tracker { robot, curve, least_singular_value: options.least_singular_value, posture: None };
     let request = Request { tracker, stations: stations(curve, 1.0), afresh: false, reference, options };
     request.path().or_else(|stopped| {
@@ -260,7 +261,11 @@ fn whole_turns(
         let wanted = ((reference[joint] - samples[0].q[joint]) / turn).round();
         turns[joint] = turn * wanted.max(fewest).min(greatest);
         if fewest > greatest {
-            let beyond = |sample: &&Sample| !(lower..=upper).contains(&(sample.q[joint] + turns[joint]));
+            // Beyond by more than rounding, which the turns allow for: there is one below, as they are as many as fit above.
+            let beyond = |sample: &&Sample| {
+                let q = sample.q[joint] + turns[joint];
+                q < lower - 1e-9 || q > upper + 1e-9
+            };
             let at = samples.iter().find(beyond).unwrap_or(&samples[0]);
             let error = ManipulatorError::JointLimit {
                 pose: tracker.pose_after(at.s),

@@ -152,7 +152,7 @@ impl Band<'_> {
         }
         for k in touched {
             let Some(row) = place(k) else { continue };
-            // Beyond a limit the discomfort still rises, so that a joint at its limit is drawn away from it.
+            // Beyond a limit the discomfort stays at its greatest, so that the difference draws a joint at its limit away from it.
             let pull = |q: &DVector<f64>| discomfort(robot, q, &robot.chain.body_jacobian(q));
             let here = pull(&configurations[k]);
             for (d, direction) in basis(k).column_iter().enumerate() {

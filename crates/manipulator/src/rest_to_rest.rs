@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
-use crate::audit::{Audit, against};
-use crate::error::{ManipulatorError, Result};
+use crate::audit::against;
+use crate::error::Result;
 use crate::holding::too_weak_for;
 use crate::options::TimingOptions;
 use crate::robot::Robot;
@@ -47,11 +47,11 @@ pub fn rest_to_rest(
             return Ok(trajectory);
         }
         if !(found.slowdown > 1.0 && found.slowdown.is_finite()) {
-            return Err(too_weak_for(&trajectory, &bounds).unwrap_or_else(|| not_met(&found.audit)));
+            return Err(too_weak_for(&trajectory, &bounds).unwrap_or_else(|| bounds.not_met(found.audit)));
         }
         least = trajectory.duration_s() * found.slowdown * 1.001;
     }
-    Err(not_met(&against(&bounds, &straight(from, &distance, to, least, &sampling)?).audit))
+    Err(bounds.not_met(against(&bounds, &straight(from, &distance, to, least, &sampling)?).audit))
 }
 
 /// Joint limits are met at once; torques and the tool's speed need a few more.
@@ -85,15 +85,4 @@ fn straight(
         })
         .collect();
     Ok(JointTrajectory { joint_names: sampling.joint_names.to_vec(), points })
-}
-
-/// Why a trajectory is withheld.
-pub(crate) fn not_met(found: &Audit) -> ManipulatorError {
-    ManipulatorError::LimitsNotMet {
-        velocity: found.max_ratio.velocity,
-        acceleration: found.max_ratio.acceleration,
-        jerk: found.max_ratio.jerk,
-        torque: found.max_ratio.torque.unwrap_or(0.0),
-        position_margin: found.position_margin,
-    }
 }

@@ -9,6 +9,7 @@ use crate::chain::Chain;
 use crate::dynamics::{Drive, Dynamics, GRAVITY_M_S2};
 use crate::error::{ManipulatorError, Result};
 use crate::inertia::Inertia;
+use crate::settings_keys;
 use crate::urdf::{self, UrdfLimits};
 
 /// Name, URDF and settings.
@@ -158,6 +159,7 @@ impl Robot {
         if let Some(joint) = settings.joints.keys().find(|name| !chain.joint_names().contains(name)) {
             return Err(ManipulatorError::UnknownJoint { joint: joint.clone() });
         }
+        settings_keys::check(settings_yaml, &chain)?;
         let mut joints = Vec::with_capacity(chain.dof());
         for (name, stated) in chain.joint_names().iter().zip(&stated) {
             let own = settings.joints.get(name);

@@ -7,28 +7,28 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use crate::bounds::Bounds;
 use crate::dynamics::Dynamics;
 use crate::error::Result;
-use crate::holding::{holding_torque, lacking};
+use crate::holding::{SlowTorque, lacking};
 
 /// Path derivatives q, q′, q″, q‴ by the optimiser's parameter, joint × gridpoint.
 pub(crate) type Derivatives = [DMatrix<f64>; 4];
 
-/// τ = m·b + c·a + g + d·q′·√a ± f, joint × gridpoint, of the joints whose effort is limited.
+/// τ = m·b + c·a + g + d·q′·√a + f·sgn(q′), joint × gridpoint, of the joints whose effort is limited.
 pub(crate) struct TorqueRows {
     of_acceleration: DMatrix<f64>,
     of_squared_speed: DMatrix<f64>,
-    holding: DMatrix<f64>,
+    /// g + f·sgn(q′).
+    slow: DMatrix<f64>,
     viscous: DMatrix<f64>,
-    dry: DVector<f64>,
     /// What each joint may give, in N·m (N for prismatic joints).
     effort: DMatrix<f64>,
 }
 
-/// Part of the torque left over beside holding that tightening leaves at least.
+/// Part of the torque left over beside slow motion that tightening leaves at least.
 const LEAST_SHARE: f64 = 0.05;
 
 impl TorqueRows {
     /// # Errors
-    /// [`crate::ManipulatorError::HoldingTorque`] where a joint cannot even hold the arm.
+    /// [`crate::ManipulatorError::HoldingTorque`] where a joint cannot move the arm however slowly.
     pub(crate) fn new(bounds: &Bounds<'_>, dynamics: &Dynamics, derivatives: &Derivatives) -> Result<Self> {
         let [q, first, second, _] = derivatives;
         let (dof, n) = q.shape();
@@ -36,9 +36,8 @@ impl TorqueRows {
         let mut rows = Self {
             of_acceleration: zeros(),
             of_squared_speed: zeros(),
-            holding: zeros(),
+            slow: zeros(),
             viscous: zeros(),
-            dry: DVector::from_iterator(dof, dynamics.drives().map(|drive| drive.friction_n_m)),
             effort: DMatrix::from_fn(dof, n, |joint, _| bounds.limits.effort[joint]),
         };
         let rest = vec![0.0; dof];
@@ -49,13 +48,13 @@ impl TorqueRows {
                 dynamics.rigid_torque(q.as_slice(), rates, accelerations, torque.as_mut_slice());
                 torque
             };
-            let holding = holding_torque(dynamics, &q);
-            if let Some((_, refusal)) = lacking(bounds, dynamics, &q, &holding, None) {
+            let slow = SlowTorque::new(dynamics, &q, &first);
+            if let Some((_, refusal)) = lacking(bounds, &q, &slow, None) {
                 return Err(refusal);
             }
-            rows.of_acceleration.set_column(k, &(torque(&rest, first.as_slice()) - &holding));
-            rows.of_squared_speed.set_column(k, &(torque(first.as_slice(), second.as_slice()) - &holding));
-            rows.holding.set_column(k, &holding);
+            rows.of_acceleration.set_column(k, &(torque(&rest, first.as_slice()) - &slow.holding));
+            rows.of_squared_speed.set_column(k, &(torque(first.as_slice(), second.as_slice()) - &slow.holding));
+            rows.slow.set_column(k, &slow.moving);
             for (joint, drive) in dynamics.drives().enumerate() {
                 rows.viscous[(joint, k)] = drive.damping_n_m_s * first[joint];
             }
@@ -66,8 +65,7 @@ impl TorqueRows {
     /// Takes off the effort of a joint at a gridpoint what the audit found too much.
     pub(crate) fn tighten(&mut self, joint: usize, station: usize, ratio: f64) {
         let effort = &mut self.effort[(joint, station)];
-        let least = self.holding[(joint, station)].abs() + self.dry[joint];
-        let left = *effort - least;
+        let left = *effort - self.slow[(joint, station)].abs();
         *effort -= ((ratio - 0.99) * *effort).min((1.0 - LEAST_SHARE) * left);
     }
 
@@ -80,9 +78,7 @@ impl TorqueRows {
             let shape = |value: &dyn Fn(usize, usize) -> f64| {
                 DMatrix::from_fn(limited.len(), about.len(), |row, station| value(limited[row], station))
             };
-            let room = |joint: usize, k: usize| {
-                self.effort[(joint, k)] - direction * self.holding[(joint, k)] - self.dry[joint]
-            };
+            let room = |joint: usize, k: usize| self.effort[(joint, k)] - direction * self.slow[(joint, k)];
             // Half the tangent's rise at rest; small enough to leave half of the room.
             let rise = |joint: usize, k: usize| {
                 let viscous = (direction * self.viscous[(joint, k)]).max(0.0);

@@ -4,7 +4,6 @@ use crate::audit::against_from;
 use crate::error::{ManipulatorError, Result};
 use crate::options::TimingOptions;
 use crate::quintic::Quintic;
-use crate::rest_to_rest::not_met;
 use crate::robot::{Limits, Robot};
 use crate::trajectory::{JointPoint, JointTrajectory, whole_ns};
 
@@ -17,8 +16,8 @@ use crate::trajectory::{JointPoint, JointTrajectory, whole_ns};
 /// earlier; where nothing better is found, the result is its remainder.
 ///
 /// # Errors
-/// [`ManipulatorError::NotRunning`] for a time outside the trajectory, [`ManipulatorError::NonFinite`] for one that cannot be
-/// executed, [`ManipulatorError::LimitsNotMet`] for one that breaks limits already, [`ManipulatorError::InvalidOption`].
+/// [`ManipulatorError::NotRunning`] for a time outside the trajectory, [`ManipulatorError::NotOfRobot`] for one that the robot cannot
+/// execute, [`ManipulatorError::LimitsNotMet`] for one that breaks limits already, [`ManipulatorError::InvalidOption`].
 pub fn slow_to_stop(
     robot: &Robot,
     running: &JointTrajectory,
@@ -30,16 +29,18 @@ pub fn slow_to_stop(
     let from = running.state_at(at_s);
     let mut best = running.after(at_s);
     let audit = |trajectory: &JointTrajectory| against_from(&bounds, trajectory, Some(&from)).audit;
-    let remainder = audit(&best);
+    let mut found = audit(&best);
     for margin in MARGINS {
         let slowed = Slowing::new(running, &bounds.limits, 1.0 / options.rate_hz, margin).from(at_s, from.clone());
-        if slowed.duration_s() < best.duration_s() && audit(&slowed).limits_ok {
-            best = slowed;
-            break;
+        if slowed.duration_s() < best.duration_s() {
+            let judged = audit(&slowed);
+            if judged.limits_ok {
+                (best, found) = (slowed, judged);
+                break;
+            }
         }
     }
-    let found = if best.points.len() == remainder.points { remainder } else { audit(&best) };
-    if found.limits_ok { Ok(best) } else { Err(not_met(&found)) }
+    if found.limits_ok { Ok(best) } else { Err(bounds.not_met(found)) }
 }
 
 /// Parts of the limits to aim at: quintics between points overshoot what they interpolate, a little.
@@ -57,7 +58,7 @@ pub(crate) fn check_running(robot: &Robot, running: &JointTrajectory, at_s: f64)
     robot.check_limits()?;
     let dof = robot.chain.dof();
     if running.joint_names != robot.chain.joint_names() || !running.is_well_formed(dof) {
-        return Err(ManipulatorError::NonFinite { what: "the running trajectory" });
+        return Err(ManipulatorError::NotOfRobot { what: "the running trajectory" });
     }
     let duration_s = running.duration_s();
     if (0.0..=duration_s).contains(&at_s) { Ok(()) } else { Err(ManipulatorError::NotRunning { at_s, duration_s }) }

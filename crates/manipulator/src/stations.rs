@@ -42,6 +42,10 @@ pub(crate) fn stations(curve: &PoseSpline, density: f64) -> Vec<Station> {
     while stations.len() > 1 && end - stations[stations.len() - 1].s < 1e-6 * (end - knots[0]) {
         stations.pop();
     }
+    if let [only] = stations[..] {
+        // A tool that stands still has no way to share out; a posture's ends need three stations.
+        stations.push(Station { s: 0.5 * (only.s + end), ..only });
+    }
     stations.push(Station { s: end, length: 0.0 });
     stations
 }

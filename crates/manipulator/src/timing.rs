@@ -6,11 +6,12 @@ use crate::audit::{Audit, Found, against, audit_under};
 use crate::bounds::Bounds;
 use crate::constant_speed;
 use crate::error::{ManipulatorError, Result};
+use crate::executed::strays;
 use crate::gridpoints::{Coarse, even_grid};
 use crate::holding::too_weak_along;
 use crate::joint_path::JointPath;
+use crate::optimise::Grid;
 use crate::options::{JointLimits, TimingOptions};
-use crate::rest_to_rest::not_met;
 use crate::robot::{Limits, Robot};
 use crate::sampling::{Sampling, sample};
 use crate::speed_profile::{Smoothed, SpeedProfile};
@@ -26,20 +27,21 @@ pub struct TimedPath {
     pub knot_times_s: Vec<f64>,
     /// The trajectory judged against the robot's limits.
     pub audit: Audit,
+    /// How far, in m, the executed tool may be from the path's between points: quintics deviate from what they interpolate. A bound at
+    /// three places an interval; at 100 points a second and 50 rad/s³ some 1e-7.
+    pub strays_m: f64,
+    /// The same as an angle, in rad.
+    pub strays_rad: f64,
     /// The least duration under limits of velocity and acceleration, of joints and tool, alone (TOPP2-RA), in s: with jerk limits it
     /// takes longer.
     pub second_order_duration_s: f64,
-    /// The shortest duration of any round's solution, in s: legal at its gridpoints, before the audit looked between them. What the
-    /// audit's corrections cost is the duration of the trajectory over this. Rounds that were solved without torques that then
-    /// counted, or on gridpoints that proved too coarse, are left out.
-    pub shortest_solution_duration_s: f64,
 }
 
 /// Published steps over which the profile is averaged: with two, a jump of the jerk becomes a ramp that quintics follow; a jump of the
 /// acceleration needs one to become a ramp.
 const WINDOW_STEPS: [f64; 2] = [2.0, 1.0];
 /// A first solution that is broken by more between its gridpoints needs twice as many: it has bends that they miss.
-const TOO_COARSE: f64 = 1.1;
+pub(crate) const TOO_COARSE: f64 = 1.1;
 /// Rounds of tightening limits where the audit finds them broken.
 const TIGHTENINGS: usize = 6;
 /// A slowdown by less than this is not worth another round.
@@ -66,9 +68,9 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
     let simple = || {
         let profile = single_quintic(path, travel, &bounds.limits, 1.0 / options.rate_hz);
         let duration = profile.duration();
-        Optimised { duration, profile, legal: None, second_order_duration: duration, shortest_duration: duration }
+        Optimised { duration, profile, legal: None, second_order_duration: duration }
     };
-    let Optimised { duration, profile, legal, second_order_duration, shortest_duration } = if travel < TINY {
+    let Optimised { duration, profile, legal, second_order_duration } = if travel < TINY {
         simple()
     } else {
         match optimised(path, &bounds, options, &sampling) {
@@ -93,13 +95,9 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
         true => audit,
         false => audit_under(robot, &trajectory, options.audit_rules(), None),
     };
-    Ok(TimedPath {
-        trajectory,
-        knot_times_s,
-        audit,
-        second_order_duration_s: second_order_duration,
-        shortest_solution_duration_s: shortest_duration,
-    })
+    let (strays_m, strays_rad) = strays(&robot.chain, path, &profile, &trajectory);
+    let second_order_duration_s = second_order_duration;
+    Ok(TimedPath { trajectory, knot_times_s, audit, strays_m, strays_rad, second_order_duration_s })
 }
 
 /// The least duration along `path`, from rest to rest, under limits of velocity and acceleration, of joints and tool, alone, in s:
@@ -108,9 +106,11 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
 /// It bounds what [`time_path`] can reach, as closely as the gridpoints resolve the path, and takes a few milliseconds.
 ///
 /// # Errors
-/// [`ManipulatorError::Timing`], [`ManipulatorError::InvalidOption`], [`ManipulatorError::NonFinite`].
+/// [`ManipulatorError::Timing`], [`ManipulatorError::InvalidOption`], [`ManipulatorError::NonFinite`],
+/// [`ManipulatorError::WrongSize`] and [`ManipulatorError::InvalidJoint`] for a path or limits that are not the robot's.
 pub fn least_duration_s(robot: &Robot, path: &JointPath, options: &TimingOptions, intervals: usize) -> Result<f64> {
     let bounds = options.bounds(robot)?;
+    robot.check_configuration("the joint path", &path.at(path.domain().0)[0])?;
     let (_, times) = even_grid(path, &bounds, options, intervals.max(2))?.second_order(None)?;
     times.last().copied().ok_or(ManipulatorError::NonFinite { what: "the joint path" })
 }
@@ -161,8 +161,28 @@ struct Optimised {
     /// The trajectory and its audit, where it needs no slowdown.
     legal: Option<Audited>,
     second_order_duration: f64,
-    /// Of the rounds' solutions, before any slowdown.
-    shortest_duration: f64,
+}
+
+/// What finds a profile on given gridpoints.
+pub(crate) struct Solver {
+    jerk_limited: bool,
+    window: f64,
+}
+
+impl Solver {
+    pub(crate) fn new(options: &TimingOptions) -> Self {
+        let jerk_limited = options.limits == JointLimits::Jerk;
+        Self { jerk_limited, window: WINDOW_STEPS[usize::from(!jerk_limited)] / options.rate_hz }
+    }
+
+    /// The profile linearised about squared speeds, and its own.
+    pub(crate) fn solve(&self, gridpoints: &Grid, about: Option<&[f64]>) -> Result<(Smoothed, Vec<f64>)> {
+        let (profile, squared_speeds) = match self.jerk_limited {
+            true => gridpoints.third_order(about)?,
+            false => gridpoints.second_order_profile(about)?,
+        };
+        Ok((Smoothed::new(profile, self.window), squared_speeds))
+    }
 }
 
 /// The best of several rounds of solving and tightening.
@@ -175,41 +195,30 @@ fn optimised(
     let coarse = Coarse::new(path, bounds, options)?;
     let second_order_duration = coarse.duration();
     let mut gridpoints = coarse.grid(1)?;
-    let jerk_limited = options.limits == JointLimits::Jerk;
-    let window = WINDOW_STEPS[usize::from(!jerk_limited)] / sampling.rate_hz;
+    let solver = Solver::new(options);
     let mut seed: Option<Vec<f64>> = None;
     let mut best: Option<(f64, Smoothed, Option<Audited>)> = None;
-    let mut shortest_duration = f64::INFINITY;
     for round in 0..=TIGHTENINGS {
-        let solved = match jerk_limited {
-            true => gridpoints.third_order(seed.as_deref()),
-            false => gridpoints.second_order_profile(seed.as_deref()),
-        };
-        let (profile, squared_speeds) = match solved {
-            Ok((profile, squared_speeds)) => (Smoothed::new(profile, window), squared_speeds),
+        let (profile, squared_speeds) = match solver.solve(&gridpoints, seed.as_deref()) {
+            Ok(solution) => solution,
             // Tightening may have made the problem infeasible or ill-posed; what was found before still stands.
             Err(_) if best.is_some() => break,
             Err(error) => return Err(error),
         };
-        shortest_duration = shortest_duration.min(profile.duration());
         let trajectory = sample(path, &profile, profile.duration(), sampling)?;
         let Found { audit, slowdown } = against(bounds, &trajectory);
         // The first solution is linearised about one without jerk limits; the second, about the first, is faster.
-        let good_enough = slowdown < GOOD_ENOUGH && (round > 0 || !jerk_limited);
+        let good_enough = slowdown < GOOD_ENOUGH && (round > 0 || !solver.jerk_limited);
         let too_coarse = round == 0 && slowdown > TOO_COARSE;
         let too_strong = bounds.rules.torque && audit.max_ratio.torque.is_some_and(|ratio| ratio > 1.0);
         seed = Some(squared_speeds);
         if too_coarse && !too_strong {
             gridpoints = coarse.grid(2)?;
             seed = None;
-            shortest_duration = f64::INFINITY;
         } else if !good_enough {
             tighten(&mut gridpoints, bounds, &trajectory, &profile, too_strong);
         }
         if too_strong && !good_enough {
-            if gridpoints.torque.is_none() {
-                shortest_duration = f64::INFINITY;
-            }
             // After the tightening: by how much torques are too great while nothing limits them says nothing of what will be left.
             gridpoints.limit_torque(bounds)?;
         }
@@ -223,9 +232,7 @@ fn optimised(
     }
     let (duration, profile, legal) =
         best.ok_or_else(|| ManipulatorError::Timing { reason: "no round was solved".into() })?;
-    // Infinite where no round was solved any more after the last that does not count.
-    let shortest_duration = shortest_duration.min(duration);
-    Ok(Optimised { duration, profile, legal, second_order_duration, shortest_duration })
+    Ok(Optimised { duration, profile, legal, second_order_duration })
 }
 
 /// How long a trajectory takes when it is slowed down by that much: a thousandth more, so that a few rounds suffice and no
@@ -258,7 +265,7 @@ fn slowed_until_legal(
         // Where no slowdown helps, a position limit is broken, or holding the arm alone takes too much torque.
         if attempt == ATTEMPTS || slowdown <= 1.0 || slowdown.is_infinite() {
             let weak = slowdown.is_infinite().then(|| too_weak_along(path, bounds)).flatten();
-            return Err(weak.unwrap_or_else(|| not_met(&audit)));
+            return Err(weak.unwrap_or_else(|| bounds.not_met(audit)));
         }
         duration = slowed(&trajectory, slowdown);
         if !duration.is_finite() {

@@ -57,7 +57,9 @@ struct Interval<'a> {
 }
 
 impl Interval<'_> {
-    /// An error unless joints and tool provably stay within their bounds.
+    /// An error unless joints and tool stay within their bounds. For joints and the tool's position that is a proof. For its rotation it
+    /// is one up to what the curve's turning is taken for between three places ([`TURNING_MARGIN`]) and to terms that are smaller by
+    /// the angle of the error itself, in rad.
     ///
     /// Between two places a and b the error's distance from its linear interpolation is at most (b − a)²/8 times the greatest second
     /// derivative, for which the sum of tool's and curve's accelerations is a bound. Places are added in the middle until that
@@ -127,7 +129,8 @@ impl Interval<'_> {
     /// Bounds of the second derivative of the tool's error, in m and rad per squared unit of the parameter.
     ///
     /// |∂²p/∂qᵢ∂qⱼ| is at most the tool's greatest distance from the farther joint's axis. On a segment of the curve p″ is linear,
-    /// so that its ends bound it; how the curve turns is taken at three places, with a margin.
+    /// so that its ends bound it; how the curve turns is taken at three places, with a margin. The second derivative of the rotation
+    /// vector φ differs from that of the relative turning by terms of order ‖φ‖·‖ω‖², which are left out.
     fn bends(&self) -> PoseError {
         let chain = &self.tracker.robot.chain;
         let polynomials = self.spline.polynomials(self.index);

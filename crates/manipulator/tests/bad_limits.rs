@@ -5,8 +5,8 @@ mod support;
 
 use manipulator::nalgebra::DVector;
 use manipulator::{
-    IkOptions, ManipulatorError, PathOptions, Robot, TimingOptions, audit, connect, follow, rest_to_rest, slow_to_stop,
-    solve_ik, time_path,
+    AuditRules, IkOptions, ManipulatorError, PathOptions, Robot, TimingOptions, audit, audit_under, connect, follow,
+    least_duration_s, rest_to_rest, slow_to_stop, solve_ik, time_path,
 };
 use support::curves::{spline, writing};
 use support::{Random, random_path, ur5e};
@@ -58,6 +58,20 @@ fn limits_in_settings_of_zero_negative_missing_and_no_number_are_refused_by_name
     }
 }
 
+/// The last of two would win, and metres would count as radians.
+#[test]
+fn a_joint_that_is_there_twice_and_figures_in_other_units_are_refused_by_name() {
+    let twice = format!("{SETTINGS}\n  elbow_joint: {{ acceleration_rad_s2: 50.0, jerk_rad_s3: 500.0 }}\n");
+    let is_last = SETTINGS.trim_end().lines().last().unwrap().starts_with("  wrist_3_joint");
+    assert!(is_last, "the joints are no longer the last of the settings");
+    assert_refused(URDF, &twice, &["elbow_joint", "twice"]);
+    for (key, other) in
+        [("acceleration_rad_s2", "acceleration_m_s2"), ("jerk_rad_s3", "jerk_m_s3"), ("preferred_rad", "preferred_m")]
+    {
+        assert_refused(URDF, &SETTINGS.replace(key, other), &["turns", key, other]);
+    }
+}
+
 #[test]
 fn limits_in_a_urdf_of_zero_negative_missing_and_no_number_are_refused_by_name() {
     assert_eq!(URDF.matches(STATED).count(), 1);
@@ -94,6 +108,7 @@ fn limits_that_were_set_by_hand_are_checked_before_use() {
         assert!(!audit(robot, &running).limits_ok);
         [
             time_path(robot, &path, &options).map(drop),
+            least_duration_s(robot, &path, &options, 100).map(drop),
             rest_to_rest(robot, &home, &home.add_scalar(0.1), &options).map(drop),
             slow_to_stop(robot, &running, half_way, &options).map(drop),
             connect(robot, &running, half_way, &home, &options).map(drop),
@@ -134,6 +149,21 @@ fn limits_that_were_set_by_hand_are_checked_before_use() {
     }
 }
 
+/// The fields of the rules are public too, and a limit that is none would pass every comparison.
+#[test]
+fn tool_limits_that_are_none_fail_every_audit() {
+    let robot = ur5e();
+    let home = robot.preferred.clone();
+    let legal = rest_to_rest(&robot, &home, &home.add_scalar(0.1), &TimingOptions::default()).unwrap();
+    let passes = |rules: AuditRules| audit_under(&robot, &legal, rules, None).limits_ok;
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(!passes(AuditRules { tool_speed_m_s: Some(value), ..AuditRules::default() }), "{value}");
+        assert!(!passes(AuditRules { tool_acceleration_m_s2: Some(value), ..AuditRules::default() }), "{value}");
+    }
+    let wide = AuditRules { tool_speed_m_s: Some(10.0), tool_acceleration_m_s2: Some(1e3), ..AuditRules::default() };
+    assert!(passes(wide));
+}
+
 #[test]
 fn a_chain_without_joints_and_frames_that_do_not_exist_are_refused_by_name() {
     for (from, to, words) in [
@@ -163,7 +193,8 @@ fn a_joint_hardly_beyond_its_limits_is_told_by_how_much() {
         let mut q = robot.preferred.clone();
         q[2] = robot.limits.upper[2] + by;
         let message = robot.check_within_limits("the start", &q).unwrap_err().to_string();
-        let sentence = format!("the start: elbow_joint is {words} rad (or m) beyond its upper limit of 1.5708");
+        let sentence =
+            format!("the start: elbow_joint is at {:.4}, {words} rad (or m) beyond its upper limit of 1.5708", q[2]);
         assert_eq!(message, sentence);
     }
 }

@@ -6,10 +6,12 @@ mod support;
 use std::f64::consts::{PI, TAU};
 
 use manipulator::nalgebra::{DVector, Vector3};
-use manipulator::{IkOptions, JointPath, ManipulatorError, PathOptions, Robot, follow, solve_ik};
+use manipulator::{
+    IkOptions, JointPath, ManipulatorError, PathOptions, Robot, TimingOptions, follow, solve_ik, time_path,
+};
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, Twist, centripetal_knots, pose_from_xyzw};
 use support::curves::{spline, writing};
-use support::{Random, random_configuration, ur5e};
+use support::{Random, mounted_ur5e, random_configuration, ur5e};
 
 fn off(a: &Pose, b: &Pose) -> (f64, f64) {
     ((a.translation.vector - b.translation.vector).norm(), So3.distance(&a.rotation, &b.rotation))
@@ -152,15 +154,7 @@ fn the_path_starts_with_the_second_derivative_of_the_curve() {
 /// What the arm does must not depend on where the base stands: moved with the poses, it makes the same joint path.
 #[test]
 fn moving_base_and_poses_together_changes_nothing() {
-    let g = pose_from_xyzw([0.4, -0.3, 0.9], [0.5, 0.5, -0.5, 0.5]).unwrap();
-    let (roll, pitch, yaw) = g.rotation.euler_angles();
-    let mount = format!(
-        r#"<link name="room"/><joint name="mount" type="fixed"><origin xyz="0.4 -0.3 0.9" rpy="{roll} {pitch} {yaw}"/>
-           <parent link="room"/><child link="base_link"/></joint><link name="base_link"/>"#
-    );
-    let urdf = include_str!("../../../config/robots/ur5e.urdf").replace(r#"<link name="base_link"/>"#, &mount);
-    let settings = include_str!("../../../config/robots/ur5e.yaml").replace("base_link", "room");
-    let (mounted, robot) = (Robot::from_urdf(&urdf, &settings).unwrap(), ur5e());
+    let ((g, mounted), robot) = (mounted_ur5e(), ur5e());
     let poses = writing(&robot, 40);
     let moved: Vec<Pose> = poses.iter().map(|pose| g * pose).collect();
     let [path, moved_path] = [(&robot, poses), (&mounted, moved)]
@@ -274,4 +268,30 @@ fn malformed_requests_are_refused() {
         follow(&robot, &curve, None, &options),
         Err(ManipulatorError::InvalidOption { name: "tolerance_m", .. })
     ));
+}
+
+/// The tool stays where it is: so does the arm, with as many joints as it may have.
+#[test]
+fn a_curve_of_no_length_is_followed_by_standing_still() {
+    for name in Robot::shipped_names() {
+        let robot = Robot::shipped(name).unwrap();
+        let pose = robot.chain.forward(&robot.preferred);
+        let curve = PoseSpline::through(&[pose, pose], &[0.0, 1.0], Ends::Natural).unwrap();
+        let path = follow(&robot, &curve, Some(&robot.preferred), &PathOptions::default()).unwrap();
+        let (metres, radians) = greatest_deviation(&robot, &curve, &path);
+        assert!(metres < 1e-8 && radians < 1e-8, "{name}: {metres} m, {radians} rad");
+        let timed = time_path(&robot, &path, &TimingOptions::default()).unwrap();
+        assert!(timed.audit.limits_ok);
+    }
+}
+
+/// Where a redundant arm looks for configurations afresh it begins at the one it prefers, whatever the start.
+#[test]
+fn a_preferred_configuration_of_the_wrong_size_is_refused() {
+    let mut robot = Robot::shipped("panda").unwrap();
+    let start = robot.preferred.clone();
+    let curve = spline(&writing(&robot, 20));
+    robot.preferred = DVector::zeros(6);
+    let refused = follow(&robot, &curve, Some(&start), &PathOptions::default()).unwrap_err();
+    assert!(matches!(refused, ManipulatorError::WrongSize { expected: 7, given: 6, .. }), "{refused}");
 }

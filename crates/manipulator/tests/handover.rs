@@ -5,20 +5,24 @@ mod support;
 
 use manipulator::nalgebra::DVector;
 use manipulator::{
-    EndDerivatives, JointPath, JointTrajectory, ManipulatorError, Robot, TimingOptions, audit, audit_from, connect,
-    rest_to_rest, slow_to_stop, time_path,
+    EndDerivatives, JointPath, JointTrajectory, ManipulatorError, Robot, TimingOptions, audit, audit_from, audit_under,
+    connect, rest_to_rest, slow_to_stop, time_path,
 };
 use support::{Random, random_configuration, random_path};
 
 /// A timed random path around the configuration that the arm prefers.
 fn running(robot: &Robot, random: &mut Random) -> JointTrajectory {
+    running_under(robot, &TimingOptions::default(), random)
+}
+
+fn running_under(robot: &Robot, options: &TimingOptions, random: &mut Random) -> JointTrajectory {
     let around_zero = random_path(robot, 1.5, 60, random);
     let largest = around_zero.knots().iter().map(|&s| around_zero.at(s)[0].amax()).fold(0.0, f64::max);
     let nearby: Vec<_> =
         around_zero.knots().iter().map(|&s| &robot.preferred + &around_zero.at(s)[0] * (0.6 / largest)).collect();
     let none = EndDerivatives { first: DVector::zeros(robot.chain.dof()), second: DVector::zeros(robot.chain.dof()) };
     let path = JointPath::through(around_zero.knots(), &nearby, [&none, &none]).unwrap();
-    time_path(robot, &path, &TimingOptions::default()).unwrap().trajectory
+    time_path(robot, &path, options).unwrap().trajectory
 }
 
 /// A time of a running trajectory: that of one of its points, or any other.
@@ -148,8 +152,11 @@ fn a_stop_that_takes_more_torque_than_there_is_is_not_returned() {
         // Where even going on takes too much there is nothing to return.
         robot.limits.effort.iter_mut().zip(&needed).for_each(|(effort, needed)| *effort = 0.9 * needed);
         let refused = slow_to_stop(&robot, &running, at_s, &options).unwrap_err();
-        let ManipulatorError::LimitsNotMet { torque, velocity, jerk, .. } = refused else { panic!("{refused}") };
-        assert!(torque > 1.0 && velocity <= 1.0 && jerk <= 1.0, "{refused}");
+        let message = refused.to_string();
+        let ManipulatorError::LimitsNotMet { audit, .. } = refused else { panic!("{message}") };
+        let found = audit.max_ratio;
+        assert!(found.torque.unwrap() > 1.0 && found.velocity <= 1.0 && found.jerk <= 1.0, "{message}");
+        assert!(message.contains("a joint's torque goes") && !message.contains("velocity"), "{message}");
     }
     assert!(too_hard > 0, "no stop was too hard: the test shows nothing");
 }
@@ -183,6 +190,34 @@ fn a_hand_over_begins_in_the_state_and_ends_at_rest_at_the_goal() {
     gain.sort_by(f64::total_cmp);
     println!("median of stop and go {}", gain[gain.len() / 2]);
     assert!(gain[gain.len() / 2] < 0.9);
+}
+
+/// Limits of the tool are slower than those of the joints by far: a way that is legal at rest is legal after a stop.
+#[test]
+fn a_hand_over_keeps_the_limits_of_the_tool() {
+    let mut random = Random(101);
+    let cases = [
+        ("ur5e", Some(0.1), None),
+        ("vx300s", None, Some(0.3)),
+        ("panda", Some(0.1), Some(0.3)),
+        ("ur5e", None, Some(0.3)),
+    ];
+    for (name, tool_speed_m_s, tool_acceleration_m_s2) in cases {
+        let options = TimingOptions { tool_speed_m_s, tool_acceleration_m_s2, ..TimingOptions::default() };
+        let robot = Robot::shipped(name).unwrap();
+        let running = running_under(&robot, &options, &mut random);
+        let at_s = some_time(&running, &mut random);
+        for part in [0.05, 1.0] {
+            let goal = &robot.preferred + random_configuration(&robot, 0.5, &mut random) * part;
+            let clock = std::time::Instant::now();
+            let next = connect(&robot, &running, at_s, &goal, &options).unwrap();
+            println!("{name}: {:.3} s, found in {:?}", next.duration_s(), clock.elapsed());
+            assert_taken_over(&robot, &running, at_s, &next);
+            let found = audit_under(&robot, &next, options.audit_rules(), Some(&running.state_at(at_s)));
+            assert!(found.limits_ok, "{found:?}");
+            assert_eq!(next.points.last().unwrap().positions, goal.as_slice());
+        }
+    }
 }
 
 /// At its last point, and at its first, a trajectory is at rest: nothing is left to stop, and a hand-over is a move from rest.
@@ -223,13 +258,23 @@ fn what_cannot_be_handed_over_is_named() {
     let mut spoilt = running.clone();
     spoilt.points[5].velocities.pop();
     let refused = connect(&robot, &spoilt, middle, &robot.preferred, &options).unwrap_err();
-    assert!(matches!(refused, ManipulatorError::NonFinite { .. }), "{refused}");
+    assert!(matches!(refused, ManipulatorError::NotOfRobot { .. }), "{refused}");
+    let mut others = running.clone();
+    others.joint_names.reverse();
+    let refused = connect(&robot, &others, middle, &robot.preferred, &options).unwrap_err().to_string();
+    assert!(refused.contains("the running trajectory") && refused.contains("its joints in their order"), "{refused}");
     let empty = JointTrajectory { points: Vec::new(), ..running.clone() };
     assert!(slow_to_stop(&robot, &empty, 0.0, &options).is_err());
     // Under tighter limits than it was planned for, what runs is illegal, and so is everything that begins in its state.
     let slow = TimingOptions { velocity_scale: 0.01, ..options };
     let refused = connect(&robot, &running, middle, &robot.preferred, &slow).unwrap_err();
     assert!(matches!(refused, ManipulatorError::LimitsNotMet { .. }), "{refused}");
+    assert!(refused.to_string().contains("a joint's velocity goes"), "{refused}");
+    // A limit of the tool that the running trajectory exceeds is named with its value.
+    let slow = TimingOptions { tool_speed_m_s: Some(0.002), ..TimingOptions::default() };
+    let refused = slow_to_stop(&robot, &running, middle, &slow).unwrap_err().to_string();
+    assert!(refused.contains("the tool's speed goes") && refused.contains("its limit of 0.002 m/s"), "{refused}");
+    assert!(!refused.contains("joint"), "{refused}");
 }
 
 /// The audit of a take-over judges the first point against the given state, bit for bit.

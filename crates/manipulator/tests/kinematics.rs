@@ -6,7 +6,7 @@ mod support;
 use manipulator::nalgebra::{DVector, Matrix6xX, UnitQuaternion, Vector3};
 use manipulator::{Chain, ManipulatorError, Robot};
 use se3_geom::{LieGroup, Manifold, Pose, Se3, Se3Group, So3, Twist, pose_from_xyzw};
-use support::{Random, random_configuration, ur5e};
+use support::{Random, mounted_ur5e, random_configuration, ur5e};
 
 /// MuJoCo's own range ends at 6.28319 and its figures have twelve decimals; the quarter turns of its quaternions are exact.
 const GOLDEN_TOLERANCE: f64 = 1e-10;
@@ -202,15 +202,7 @@ fn a_chain_of_space_screws_is_that_of_the_urdf() {
 
 #[test]
 fn moving_the_base_moves_the_tool() {
-    let g = pose_from_xyzw([0.4, -0.3, 0.9], [0.5, 0.5, -0.5, 0.5]).unwrap();
-    let (roll, pitch, yaw) = g.rotation.euler_angles();
-    let mount = format!(
-        r#"<link name="room"/><joint name="mount" type="fixed"><origin xyz="0.4 -0.3 0.9" rpy="{roll} {pitch} {yaw}"/>
-           <parent link="room"/><child link="base_link"/></joint><link name="base_link"/>"#
-    );
-    let urdf = include_str!("../../../config/robots/ur5e.urdf").replace(r#"<link name="base_link"/>"#, &mount);
-    let settings = include_str!("../../../config/robots/ur5e.yaml").replace("base_link", "room");
-    let (mounted, robot) = (Robot::from_urdf(&urdf, &settings).unwrap(), ur5e());
+    let ((g, mounted), robot) = (mounted_ur5e(), ur5e());
     let mut random = Random(5);
     for _ in 0..50 {
         let q = random_configuration(&robot, 3.0, &mut random);
@@ -234,6 +226,7 @@ fn what_is_no_serial_chain_is_refused_by_name() {
         (good.clone(), &MIXED_SETTINGS.replace("hand", "foot"), vec!["foot"]),
         (good.clone(), &MIXED_SETTINGS.replace("base_frame: world", "base_frame: tip"), vec!["tip", "hand"]),
         (good.clone(), &MIXED_SETTINGS.replace("jerk_m_s3", "jolt"), vec!["jolt"]),
+        (good.clone(), &MIXED_SETTINGS.replace("jerk_m_s3", "jerk_rad_s3"), vec!["slide", "slides", "jerk_m_s3"]),
         (good.clone(), &MIXED_SETTINGS.replace(", jerk_m_s3: 10.0", ""), vec!["jerk"]),
         (good.clone(), &MIXED_SETTINGS.replace("slide", "slid"), vec!["slid"]),
         (good.clone(), &MIXED_SETTINGS.replace("jerk_m_s3: 10.0", "jerk_m_s3: -1.0"), vec!["slide", "jerk", "-1"]),

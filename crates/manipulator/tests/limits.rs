@@ -3,10 +3,10 @@
 
 mod support;
 
-use manipulator::nalgebra::{DVector, Vector3};
+use manipulator::nalgebra::{DVector, Translation3, Vector3};
 use manipulator::{
     AuditRules, JointLimits, JointPath, ManipulatorError, PathOptions, Robot, TimedPath, TimingOptions, audit_under,
-    follow, rest_to_rest, time_path,
+    follow, time_path,
 };
 use support::curves::{spline, writing};
 use support::{Random, random_path, ur5e};
@@ -51,8 +51,8 @@ fn limits_are_not_broken_after_timing() {
                         assert!(timed.audit.max_ratio.torque.unwrap() <= 1.0);
                         assert_eq!(timed.audit, audit_under(&robot, &timed.trajectory, options.audit_rules(), None));
                     }
-                    Err(ManipulatorError::LimitsNotMet { position_margin, .. }) => {
-                        assert!(position_margin < 0.0, "{name}")
+                    Err(refused @ ManipulatorError::LimitsNotMet { .. }) => {
+                        assert!(refused.to_string().contains("beyond a position limit"), "{name}: {refused}")
                     }
                     Err(other) => panic!("{name}: {other}"),
                 }
@@ -121,68 +121,6 @@ fn without_jerk_limits_motion_is_faster_and_the_audit_says_why() {
 }
 
 #[test]
-fn torque_limits_hold_where_they_are_what_limits() {
-    let mut robot = Robot::shipped("panda").unwrap();
-    let mut random = Random(83);
-    let path = random_path(&robot, 0.5, 40, &mut random);
-    robot.limits.lower.fill(-10.0);
-    robot.limits.upper.fill(10.0);
-    // Without gravity, so that the least effort is a matter of speed alone.
-    let yaml = include_str!("../../../config/robots/panda.yaml");
-    robot.dynamics = Robot::shipped_with("panda", &format!("gravity_m_s2: [0, 0, 0]\n{yaml}")).unwrap().dynamics;
-    for limits in [JointLimits::Jerk, JointLimits::Acceleration] {
-        let options = TimingOptions { limits, ..TimingOptions::default() };
-        robot.limits.effort.fill(1e3);
-        let strong = time_path(&robot, &path, &options).unwrap();
-        let peak = 1e3 * strong.audit.max_ratio.torque.unwrap();
-        robot.limits.effort.fill(0.5 * peak);
-        let weak = time_path(&robot, &path, &options).unwrap();
-        let ratio = weak.audit.max_ratio;
-        assert!(weak.audit.limits_ok && ratio.torque.unwrap() <= 1.0 && ratio.torque.unwrap() > 0.95, "{ratio:?}");
-        // Half the torque: at most √2 slower where all of it moves links, which a uniform slowdown would cost.
-        let slower = weak.trajectory.duration_s() / strong.trajectory.duration_s();
-        assert!(slower > 1.0 && slower < 1.3, "{slower}");
-        let ignored = time_path(&robot, &path, &TimingOptions { torque: false, ..options }).unwrap();
-        assert!(ignored.audit.limits_ok && ignored.audit.max_ratio.torque.unwrap() > 1.5);
-    }
-}
-
-#[test]
-fn an_arm_too_weak_to_hold_itself_is_refused_by_name() {
-    let mut robot = ur5e();
-    robot.limits.effort[1] = 5.0;
-    let mut random = Random(89);
-    let path = random_path(&robot, 0.5, 40, &mut random);
-    let refused = time_path(&robot, &path, &TimingOptions::default()).unwrap_err();
-    assert!(refused.to_string().contains("hold the arm still near pose"), "{refused}");
-    let path_place = assert_too_weak(&robot, refused);
-    let poses = path.pose_parameters();
-    let nearest = &path.at(poses[path_place.0.unwrap()])[0];
-    let spacing = poses.windows(2).map(|pair| (&path.at(pair[1])[0] - &path.at(pair[0])[0]).amax()).fold(0.0, f64::max);
-    assert!((nearest - &path_place.1).amax() <= spacing, "the pose is not the nearest");
-
-    let (from, to) = (DVector::zeros(6), DVector::from_element(6, -0.1));
-    let refused = rest_to_rest(&robot, &from, &to, &TimingOptions::default()).unwrap_err();
-    let message = refused.to_string();
-    assert!(message.contains("\"shoulder_lift_joint\" needs") && message.contains("more than its limit"), "{message}");
-    let (pose, at) = assert_too_weak(&robot, refused);
-    assert!(pose.is_none() && (0..6).all(|j| at[j] <= 1e-12 && at[j] >= -0.1 - 1e-12), "{at}");
-}
-
-/// The pose and the configuration that a refusal names; the joint does need that much there, by the dynamics themselves.
-fn assert_too_weak(robot: &Robot, refused: ManipulatorError) -> (Option<usize>, DVector<f64>) {
-    let ManipulatorError::HoldingTorque { joint, pose, configuration, needed, effort } = refused else {
-        panic!("{refused}")
-    };
-    assert!(joint == "shoulder_lift_joint" && needed > 5.0 && effort == 5.0);
-    let mut torque = [0.0; 6];
-    robot.dynamics.as_ref().unwrap().torque(&configuration, &[0.0; 6], &[0.0; 6], &mut torque);
-    // The same function at the same place; friction of this arm is none.
-    assert_eq!(torque[1].abs(), needed);
-    (pose, DVector::from_vec(configuration))
-}
-
-#[test]
 fn tool_speed_and_acceleration_stay_below_their_limits() {
     let robot = ur5e();
     let path = written(&robot);
@@ -222,11 +160,48 @@ fn constant_tool_speed_is_held_between_ramps_or_refused_with_what_can_be_held() 
     assert!(held * 2 > timed.trajectory.points.len() * 10, "the ramps take more than half");
     match timing(2.0).unwrap_err() {
         ManipulatorError::ConstantSpeed { wanted_m_s, greatest_m_s, pose } => {
-            assert!(wanted_m_s == 2.0 && greatest_m_s > 0.05 && greatest_m_s < 2.0 && pose < 60);
-            println!("{greatest_m_s} m/s at pose {pose}");
+            assert!(
+                wanted_m_s == 2.0 && greatest_m_s > 0.05 && greatest_m_s < 2.0 && pose.is_none_or(|pose| pose < 60)
+            );
+            println!("{greatest_m_s} m/s at pose {pose:?}");
             assert_held(&timing(greatest_m_s).unwrap(), greatest_m_s);
         }
         other => panic!("{other}"),
+    }
+}
+
+/// On a short path the ramps meet before a high speed is reached: that is not a matter of some pose, and touching is not holding.
+#[test]
+fn a_path_of_ramps_alone_holds_no_constant_speed() {
+    let robot = ur5e();
+    let home = robot.chain.forward(&robot.preferred);
+    let line = |i: usize| Translation3::new(0.0, 0.0, 0.002 * i as f64) * home;
+    let curve = spline(&(0..15).map(line).collect::<Vec<_>>());
+    let path = follow(&robot, &curve, Some(&robot.preferred), &PathOptions::default()).unwrap();
+    let timing = |limits: JointLimits, speed: f64| {
+        let options = TimingOptions { limits, constant_tool_speed_m_s: Some(speed), ..TimingOptions::default() };
+        time_path(&robot, &path, &options)
+    };
+    for limits in [JointLimits::Jerk, JointLimits::Acceleration] {
+        let refused = timing(limits, 5.0).unwrap_err();
+        let message = refused.to_string();
+        let ManipulatorError::ConstantSpeed { pose: None, greatest_m_s, .. } = refused else { panic!("{message}") };
+        assert!(message.contains("ramps up and down, which fill the path"), "{message}");
+        let mut held = 0;
+        for part in [0.8, 1.0, 1.1, 1.15, 1.165, 1.18, 1.2, 1.3] {
+            let speed = part * greatest_m_s;
+            let Ok(timed) = timing(limits, speed) else {
+                assert!(part > 1.0, "{limits:?}: {greatest_m_s} m/s cannot be held after all");
+                continue;
+            };
+            let seen = tool_by_differences(&robot, &timed);
+            let fast = |s: &(f64, f64)| s.0 >= 0.99 * speed;
+            let (from, to) = (seen.iter().position(fast).unwrap(), seen.iter().rposition(fast).unwrap());
+            // Differences see the speed a place late.
+            assert!(to - from + 2 > from.min(seen.len() - to) / 5, "{limits:?}, {part}: touched from {from} to {to}");
+            held += 1;
+        }
+        assert!(held < 8, "{limits:?}: no speed was too high: the test shows nothing");
     }
 }
 

@@ -6,7 +6,7 @@ mod support;
 use manipulator::nalgebra::DVector;
 use manipulator::{
     EndDerivatives, JointPath, JointTrajectory, ManipulatorError, PathOptions, Robot, TimingOptions, audit, follow,
-    rest_to_rest, time_path,
+    least_duration_s, rest_to_rest, time_path, uncorrected_duration_s,
 };
 use support::curves::{spline, writing};
 use support::{Random, random_configuration, random_path, ur5e};
@@ -72,9 +72,13 @@ fn random_paths_become_executable_and_nearly_time_optimal() {
         let ratio = timed.trajectory.duration_s() / timed.second_order_duration_s;
         // Reaching 5 rad/s² at 50 rad/s³ costs 0.1 s at each reversal; measured on these paths: 1.03 to 1.12.
         assert!(ratio > 1.0 && ratio < 1.25, "path {i}: {ratio} of the duration without jerk limits");
-        // What the audit corrects between gridpoints is to cost a few per cent; measured on these paths: at most 1.015.
-        let corrected = timed.trajectory.duration_s() / timed.shortest_solution_duration_s;
-        assert!((1.0..1.06).contains(&corrected), "path {i}: {corrected} of the shortest solution");
+        // What the audit corrects between gridpoints is to cost a few per cent. Both are solved to 1e-3.
+        if i % 4 == 0 {
+            let uncorrected = uncorrected_duration_s(&robot, &path, &TimingOptions::default()).unwrap();
+            let cost = timed.trajectory.duration_s() / uncorrected;
+            println!("path {i}: {cost} of the uncorrected solution");
+            assert!((0.999..1.06).contains(&cost), "path {i}: {cost} of the uncorrected solution");
+        }
         // Time-optimal means that some limit is nearly reached somewhere.
         let peaks = timed.audit.max_ratio;
         assert!(peaks.velocity.max(peaks.acceleration).max(peaks.jerk) > 0.97);
@@ -217,35 +221,18 @@ fn a_path_of_nan_or_of_the_wrong_size_is_refused() {
         JointPath::through(&[0.0, 0.0], &values, [&zero, &zero]),
         Err(ManipulatorError::ParametersNotIncreasing { index: 1, .. })
     ));
-    let short = EndDerivatives { first: DVector::zeros(5), second: DVector::zeros(5) };
-    let values = [DVector::zeros(5), DVector::from_element(5, 1.0)];
-    let path = JointPath::through(&[0.0, 1.0], &values, [&short, &short]).unwrap();
-    assert!(matches!(
-        time_path(&robot, &path, &TimingOptions::default()),
-        Err(ManipulatorError::WrongSize { expected: 6, given: 5, .. })
-    ));
-}
-
-/// Points so large that the polynomial between them overflows, and joints under other names, are not legal.
-#[test]
-fn what_cannot_be_judged_does_not_pass_the_audit() {
-    let robot = Robot::shipped("ur5e").unwrap();
-    let from = DVector::from_element(6, -1.0);
-    let legal = rest_to_rest(&robot, &from, &from.add_scalar(0.2), &TimingOptions::default()).unwrap();
-    assert!(audit(&robot, &legal).limits_ok);
-    let middle = legal.points.len() / 2;
-    let huge = 1.7e308;
-    let mut position = legal.clone();
-    position.points[middle].positions[2] = huge;
-    let mut velocity = legal.clone();
-    velocity.points[middle].velocities[2] = huge;
-    let mut acceleration = legal.clone();
-    acceleration.points[middle].accelerations[2] = huge;
-    let mut reversed = legal.clone();
-    reversed.joint_names.reverse();
-    for wrong in [position, velocity, acceleration, reversed] {
-        let found = audit(&robot, &wrong);
-        assert!(!found.limits_ok && found.max_ratio.jerk > 1.0, "{found:?}");
+    for dof in [5, 7] {
+        let other = EndDerivatives { first: DVector::zeros(dof), second: DVector::zeros(dof) };
+        let values = [DVector::zeros(dof), DVector::from_element(dof, 1.0)];
+        let path = JointPath::through(&[0.0, 1.0], &values, [&other, &other]).unwrap();
+        let options = TimingOptions::default();
+        let refused = [
+            time_path(&robot, &path, &options).map(drop).unwrap_err(),
+            least_duration_s(&robot, &path, &options, 100).map(drop).unwrap_err(),
+        ];
+        for refused in refused {
+            assert_eq!(refused, ManipulatorError::WrongSize { what: "the joint path", expected: 6, given: dof });
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::motion::Handover;
 use crate::refusal::Refusal;
 
 /// How much farther than the path tolerance the final trajectory may pass from an input pose: the tolerance bounds the joint
-/// path, to which the interpolation between published points adds at most as much again.
+/// path, to which the interpolation between published points adds at most as much again ([`stays_on_path`]).
 const ACCURACY_FACTOR: f64 = 2.0;
 
 /// What is to be planned.
@@ -104,11 +104,12 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
     let at_fault = |source: ManipulatorError| Refusal::Manipulator {
         robot: robot.name.clone(),
         input_pose: source.pose().map(|knot| distinct[knot % distinct.len()]),
-        source,
+        source: Box::new(source),
     };
     let path = follow(robot, &spline, start.as_ref(), &config.path).map_err(at_fault)?;
     let path_report = PathReport::of(robot, &path).map_err(at_fault)?;
     let timed = time_path(robot, &path, &config.timing).map_err(at_fault)?;
+    stays_on_path(config, &timed)?;
     let (trajectory, approach_s) = match &start {
         Some(start) if config.approach => {
             with_approach(robot, config, start, request.handover.as_ref(), &timed).map_err(at_fault)?
@@ -250,8 +251,18 @@ fn passed_audit(
     handover: Option<&Handover>,
 ) -> Result<Audit, Refusal> {
     let from = handover.map(Handover::state);
-    let audit = audit_under(robot, trajectory, config.timing.audit_rules(), from.as_ref());
-    if audit.limits_ok { Ok(audit) } else { Err(Refusal::Limits(Box::new(audit))) }
+    let rules = config.timing.audit_rules();
+    let audit = audit_under(robot, trajectory, rules, from.as_ref());
+    if audit.limits_ok { Ok(audit) } else { Err(Refusal::Limits { audit: Box::new(audit), rules }) }
+}
+
+/// Between the poses too: what is executed strays no farther from the joint path than the joint path may from the curve.
+fn stays_on_path(config: &Config, timed: &TimedPath) -> Result<(), Refusal> {
+    let (error_m, error_rad) = (timed.strays_m, timed.strays_rad);
+    if error_m <= config.path.tolerance_m && error_rad <= config.path.tolerance_rad {
+        return Ok(());
+    }
+    Err(Refusal::Strays { error_m, error_rad, rate_hz: config.timing.rate_hz })
 }
 
 fn accuracy(

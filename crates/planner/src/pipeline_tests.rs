@@ -16,10 +16,33 @@ fn move_by(rad: f64) -> JointTrajectory {
 #[test]
 fn a_trajectory_that_fails_its_audit_is_withheld() {
     let robot = Robot::shipped("ur5e").unwrap();
-    assert!(matches!(passed_audit(&robot, &Config::default(), &move_by(0.5), None), Err(Refusal::Limits(_))));
+    let refused = passed_audit(&robot, &Config::default(), &move_by(0.5), None).unwrap_err();
+    assert!(matches!(refused, Refusal::Limits { .. }));
+    let message = refused.to_string();
+    assert!(message.contains("a joint's acceleration goes") && !message.contains('{'), "{message}");
     let from = DVector::from_element(6, -1.0);
     let legal = rest_to_rest(&robot, &from, &from.add_scalar(0.5), &Default::default()).unwrap();
     assert!(passed_audit(&robot, &Config::default(), &legal, None).unwrap().limits_ok);
+}
+
+/// At few points a second the quintics between them leave a path that is to be kept to a micrometre; the sentence says what helps.
+#[test]
+fn a_tool_that_strays_between_points_is_refused() {
+    let robot = Robot::shipped("ur5e").unwrap();
+    let home = robot.chain.forward(&robot.preferred);
+    let pose = |i: usize| {
+        let angle = 0.3 * i as f64;
+        let offset = manipulator::nalgebra::Translation3::new(0.1 * angle.sin(), 0.1 * angle.cos() - 0.1, 0.0);
+        offset * home
+    };
+    let request = Request { poses: (0..12).map(pose).collect(), ..Request::default() };
+    let mut config = Config::default();
+    config.path.tolerance_m = 1e-6;
+    assert!(plan(&robot, &config, &request).is_ok());
+    config.timing.rate_hz = 10.0;
+    let refused = plan(&robot, &config, &request).unwrap_err();
+    assert!(matches!(refused, Refusal::Strays { error_m, .. } if error_m > 1e-6), "{refused}");
+    assert!(refused.to_string().contains("raise rate_hz"), "{refused}");
 }
 
 /// A pose that the tool is not at, in position or in orientation, is named.

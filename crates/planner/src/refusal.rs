@@ -1,6 +1,6 @@
 //! Why there is no trajectory.
 
-use manipulator::{Audit, ManipulatorError};
+use manipulator::{Audit, AuditRules, ManipulatorError};
 use reorder::{OrderError, Ordering, Verdict};
 use se3_geom::{InvalidPose, SplineError};
 
@@ -105,7 +105,7 @@ pub enum Refusal {
         /// Name of the robot.
         robot: String,
         /// What went wrong, with places along the order.
-        source: ManipulatorError,
+        source: Box<ManipulatorError>,
         /// Input index of the pose concerned.
         input_pose: Option<usize>,
     },
@@ -129,9 +129,26 @@ pub enum Refusal {
         /// Angle between the orientations in rad.
         error_rad: f64,
     },
+    /// Between the published points the executed tool leaves the path by more than the tolerance.
+    #[error(
+        "between points at {rate_hz} a second the executed tool would leave the path by {error_m:.2e} m and {error_rad:.2e} rad, more than the tolerance: raise rate_hz or the tolerance"
+    )]
+    Strays {
+        /// In m.
+        error_m: f64,
+        /// In rad.
+        error_rad: f64,
+        /// Published points per second.
+        rate_hz: f64,
+    },
     /// The whole trajectory, approach included, does not pass its audit; it is withheld.
-    #[error("the trajectory does not pass its audit and is withheld: {0:?}")]
-    Limits(Box<Audit>),
+    #[error("the trajectory does not pass its audit and is withheld: {}", audit.faults(rules))]
+    Limits {
+        /// What was found of it.
+        audit: Box<Audit>,
+        /// What it was to keep.
+        rules: AuditRules,
+    },
 }
 
 impl Refusal {

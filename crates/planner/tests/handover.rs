@@ -7,7 +7,7 @@ mod support;
 use std::collections::BTreeMap;
 
 use planner::manipulator::nalgebra::Vector3;
-use planner::manipulator::{JointTrajectory, Robot, audit};
+use planner::manipulator::{JointTrajectory, ManipulatorError, Robot, audit};
 use planner::se3_geom::{LieGroup, Pose, So3Group, xyzw_from_rotation};
 use planner::{Config, Input, Job, Motion, Outcome, Output, RawPose, Refusal, Session};
 use support::random::Random;
@@ -132,7 +132,16 @@ fn reason(refusal: &Refusal) -> &'static str {
     match refusal {
         Refusal::InvalidPose { .. } => "a pose is none",
         Refusal::Verdict { .. } => "the order is uncertain",
-        Refusal::Manipulator { .. } => "the arm cannot follow",
+        Refusal::Manipulator { source, .. } => match &**source {
+            ManipulatorError::Unreachable(_) => "out of reach",
+            ManipulatorError::UnreachableBetween { .. }
+            | ManipulatorError::JointLimit { .. }
+            | ManipulatorError::Singular { .. }
+            | ManipulatorError::Jump { .. }
+            | ManipulatorError::NotCyclic { .. } => "the arm cannot follow",
+            // Where the curve can be followed it can be led to, whatever the arm is doing.
+            other => panic!("{other}"),
+        },
         other => panic!("{other}"),
     }
 }

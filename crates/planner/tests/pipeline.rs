@@ -196,7 +196,7 @@ fn refusals_name_the_input() {
     assert_eq!(short.to_string(), "the start state has 5 values for a robot of 6 joints");
     // Degrees where radians belong, an encoder gone mad, and no number: refused before anything is planned from them.
     for (value, words) in [
-        (-90.0, "shoulder_pan_joint is 83.7168 rad (or m) beyond its lower limit of -6.2832"),
+        (-90.0, "shoulder_pan_joint is at -90.0000, 83.7168 rad (or m) beyond its lower limit of -6.2832"),
         (1e6, "beyond its upper limit"),
         (1e300, "beyond its upper limit"),
         (f64::NAN, "not a finite number"),

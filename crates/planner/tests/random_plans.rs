@@ -12,6 +12,7 @@ use planner::manipulator::{Audit, ManipulatorError, Robot, audit};
 use planner::reorder::{Options, Topology, order_poses};
 use planner::se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, centripetal_knots};
 use planner::{Plan, Refusal, plan};
+use support::closing::{between_poses_fault, loop_fault};
 use support::follower::{End, follow_from_many};
 use support::pose_sets::PoseSet;
 use support::random::Random;
@@ -77,22 +78,23 @@ fn assert_planned_or_truly_refused(name: &str) {
 
 /// The worst of many audits: greatest ratios of peak to limit, and the least distance to a position limit in rad.
 struct Worst {
-    ratios: [f64; 4],
+    ratios: [Option<f64>; 4],
     margin_rad: f64,
 }
 
 impl Default for Worst {
     fn default() -> Self {
-        Self { ratios: [0.0; 4], margin_rad: f64::INFINITY }
+        Self { ratios: [None; 4], margin_rad: f64::INFINITY }
     }
 }
 
 impl Worst {
     fn take(&mut self, audit: &Audit) {
         let found = audit.max_ratio;
-        let ratios = [found.velocity, found.acceleration, found.jerk, found.torque.unwrap_or(f64::NAN)];
+        let ratios = [Some(found.velocity), Some(found.acceleration), Some(found.jerk), found.torque];
         for (worst, ratio) in self.ratios.iter_mut().zip(ratios) {
-            *worst = worst.max(ratio);
+            // None, an unknown torque, is less than any ratio.
+            *worst = if ratio > *worst { ratio } else { *worst };
         }
         self.margin_rad = self.margin_rad.min(audit.position_margin);
     }
@@ -100,14 +102,15 @@ impl Worst {
 
 impl Display for Worst {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let [velocity, acceleration, jerk, torque] = self.ratios;
-        write!(f, "{velocity:.6}, {acceleration:.6}, {jerk:.6}, {torque:.6} | {:.1e} rad", self.margin_rad)
+        let [velocity, acceleration, jerk, torque] =
+            self.ratios.map(|ratio| ratio.map_or_else(|| "unknown".to_owned(), |ratio| format!("{ratio:.6}")));
+        write!(f, "{velocity}, {acceleration}, {jerk}, {torque} | {:.1e} rad", self.margin_rad)
     }
 }
 
 fn kind(refusal: &Refusal) -> &'static str {
     match refusal {
-        Refusal::Manipulator { source, .. } => match source {
+        Refusal::Manipulator { source, .. } => match &**source {
             ManipulatorError::Unreachable { .. } => "unreachable",
             ManipulatorError::JointLimit { .. } => "joint limit",
             ManipulatorError::Singular { .. } => "singular",
@@ -142,18 +145,13 @@ fn fault_of(robot: &Robot, set: &PoseSet, plan: &Plan) -> Option<String> {
     if let Some(fault) = poses.iter().zip(&plan.pose_times_s).find_map(|(pose, &time_s)| off(pose, time_s)) {
         return Some(fault);
     }
+    if let Some(fault) = between_poses_fault(robot, plan) {
+        return Some(fault);
+    }
     if !set.closed {
         return None;
     }
-    let (from, to) = plan.spline.domain();
-    let (out, back) = (plan.spline.at(from), plan.spline.at(to));
-    let rates = (out.twist.to_vector() - back.twist.to_vector()).norm() / out.twist.to_vector().norm();
-    let bends = (out.acceleration.to_vector() - back.acceleration.to_vector()).norm();
-    // Both are rounding: of sums of some hundred terms at 1e-16, amplified by at most 1/gap² ≤ 1e6 in the second derivative.
-    if rates > 1e-9 || bends > 1e-6 * out.acceleration.to_vector().norm().max(1.0) {
-        return Some(format!("the loop does not close smoothly: {rates:.1e}, {bends:.1e}"));
-    }
-    off(&poses[plan.ordering.order[0]], plan.trajectory.duration_s())
+    loop_fault(robot, set, plan).or_else(|| off(&poses[plan.ordering.order[0]], plan.trajectory.duration_s()))
 }
 
 /// What speaks against a refusal, if anything does.
@@ -176,7 +174,7 @@ fn doubt_about(robot: &Robot, set: &PoseSet, refusal: &Refusal) -> Option<String
         ends.iter().filter_map(like).any(|s| segment.contains(&s))
     };
     let named = |joint: &str| robot.chain.joint_names().iter().position(|name| name == joint);
-    let holds = match source {
+    let holds = match &**source {
         ManipulatorError::JointLimit { pose, joint, value, lower, upper } => {
             !(lower..=upper).contains(&value)
                 && stopped(*pose, &|end| match end {

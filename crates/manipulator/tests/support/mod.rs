@@ -2,9 +2,11 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 pub(crate) mod curves;
+pub(crate) mod sound;
 
 use manipulator::nalgebra::DVector;
 use manipulator::{EndDerivatives, JointPath, Robot};
+use se3_geom::{Pose, pose_from_xyzw};
 
 /// SplitMix64 (Steele, Lea, Flood 2014): a few lines, the same everywhere.
 pub(crate) struct Random(pub(crate) u64);
@@ -24,6 +26,19 @@ impl Random {
 
 pub(crate) fn ur5e() -> Robot {
     Robot::shipped("ur5e").unwrap()
+}
+
+/// A pose of the base of a UR5e in a room, and that robot, whose base frame is the room's.
+pub(crate) fn mounted_ur5e() -> (Pose, Robot) {
+    let g = pose_from_xyzw([0.4, -0.3, 0.9], [0.5, 0.5, -0.5, 0.5]).unwrap();
+    let (roll, pitch, yaw) = g.rotation.euler_angles();
+    let mount = format!(
+        r#"<link name="room"/><joint name="mount" type="fixed"><origin xyz="0.4 -0.3 0.9" rpy="{roll} {pitch} {yaw}"/>
+           <parent link="room"/><child link="base_link"/></joint><link name="base_link"/>"#
+    );
+    let urdf = include_str!("../../../../config/robots/ur5e.urdf").replace(r#"<link name="base_link"/>"#, &mount);
+    let settings = include_str!("../../../../config/robots/ur5e.yaml").replace("base_link", "room");
+    (g, Robot::from_urdf(&urdf, &settings).unwrap())
 }
 
 /// A random configuration, each joint within `half_range` of the middle of its limits.

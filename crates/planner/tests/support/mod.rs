@@ -3,6 +3,7 @@
 // Each test binary uses its part of this, and helpers of tests are not seen as tests.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub(crate) mod closing;
 pub(crate) mod follower;
 pub(crate) mod outputs;
 pub(crate) mod pose_sets;
