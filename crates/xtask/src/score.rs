@@ -222,16 +222,17 @@ mod tests {
 
     #[test]
     fn a_wrong_order_that_is_vouched_for_is_a_false_claim() {
+        let line = rows(&["0,0", "1,0", "2,0", "3,0", "4,0", "5,0"]);
         let wrong = |verdict: &str, at: [usize; 2]| {
-            judge(
-                &json!({"order": [1, 4, 2, 3, 0], "topology": "open", "verdict": verdict, "doubts": [{"at": at, "why": ""}]}),
-            )
+            let doubts = json!([{"at": at, "why": ""}]);
+            let answer = json!({"order": [0, 1, 2, 4, 3, 5], "topology": "open", "verdict": verdict, "doubts": doubts});
+            judged("r2", &line, &[0, 1, 2, 3, 4, 5], &answer, 0.5).unwrap()
         };
-        let score = wrong("plausible", [4, 2]);
-        assert_eq!(score.adjacency, 2.0 / 3.0);
+        let score = wrong("plausible", [2, 4]);
+        assert_eq!(score.adjacency, 3.0 / 5.0);
         assert!(score.is_false() && score.doubted_where_wrong);
-        assert!(wrong("certified", [0, 0]).is_false() && !wrong("certified", [0, 0]).doubted_where_wrong);
-        assert!(!wrong("ambiguous", [4, 2]).is_false());
+        assert!(wrong("certified", [0, 1]).is_false() && !wrong("certified", [0, 1]).doubted_where_wrong);
+        assert!(!wrong("ambiguous", [2, 4]).is_false());
     }
 
     #[test]
