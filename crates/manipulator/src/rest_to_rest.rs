@@ -21,8 +21,9 @@ pub(crate) fn least_duration(distance: f64, velocity: f64, acceleration: f64, je
 /// quintics between its points are pieces of that quintic. Equal ends give a single point at rest.
 ///
 /// # Errors
-/// [`ManipulatorError`] for malformed configurations or options, [`ManipulatorError::BeyondLimits`] for an end beyond a limit,
-/// [`ManipulatorError::HoldingTorque`] where a joint cannot hold the arm somewhere on the way.
+/// [`ManipulatorError`](crate::ManipulatorError) for malformed configurations or options,
+/// [`BeyondLimits`](crate::ManipulatorError::BeyondLimits) for an end beyond a limit,
+/// [`HoldingTorque`](crate::ManipulatorError::HoldingTorque) where a joint cannot hold the arm somewhere on the way.
 pub fn rest_to_rest(
     robot: &Robot,
     from: &DVector<f64>,
