@@ -4,6 +4,7 @@ mod bench;
 mod demo;
 mod env;
 mod failure;
+mod interfaces;
 mod mujoco;
 mod process;
 mod python;
