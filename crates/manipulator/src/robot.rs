@@ -132,6 +132,14 @@ impl Robot {
         SHIPPED.iter().map(|(name, ..)| *name)
     }
 
+    /// URDF and YAML settings of a robot whose description is part of this crate, as text.
+    ///
+    /// # Errors
+    /// As [`Robot::shipped`].
+    pub fn shipped_description(name: &str) -> Result<(&'static str, &'static str)> {
+        shipped_description(name)
+    }
+
     /// A robot whose description is part of this crate, with other settings than the shipped ones.
     ///
     /// # Errors

@@ -201,7 +201,19 @@ impl SimulatedArm {
         Ok(())
     }
 
-    fn joint_state(&self) -> (DVector<f64>, DVector<f64>) {
+    /// One step of [`SimulatedArm::step_towards`], and its length in s.
+    pub(crate) fn step(&mut self, reference: [DVector<f64>; 3], mid_velocity: &DVector<f64>) -> Result<f64> {
+        let timestep_s = self.plant.model_opt().timestep;
+        let time_s = self.plant.ffi().time;
+        self.plant.step1();
+        self.set_controls(&reference, mid_velocity, true);
+        self.plant.step2();
+        self.check_stable(time_s, timestep_s)?;
+        Ok(timestep_s)
+    }
+
+    /// Positions in rad (m for slides) and velocities per s, in the order of [`SimulatedArm::joint_names`].
+    pub fn joint_state(&self) -> (DVector<f64>, DVector<f64>) {
         let count = self.servos.len();
         let of = |values: &[f64], place: fn(&Servo) -> usize| {
             DVector::from_iterator(count, self.servos.iter().map(|servo| values[place(servo)]))

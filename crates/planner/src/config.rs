@@ -84,7 +84,11 @@ impl Config {
         Ok(config)
     }
 
-    pub(crate) fn check(&self) -> Result<(), Refusal> {
+    /// Whether every value is in its range.
+    ///
+    /// # Errors
+    /// [`Refusal::Config`] with the key and what is wrong with it.
+    pub fn check(&self) -> Result<(), Refusal> {
         let length_m = self.metres_per_radian;
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(Refusal::Config(format!("metres_per_radian must be a positive number, not {length_m}")));

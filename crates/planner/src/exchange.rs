@@ -21,6 +21,15 @@ pub enum Input {
         /// `base_from_tool`, unchecked.
         poses: Vec<RawPose>,
     },
+    /// Unordered poses arrived in a frame whose place to the robot's base is not known.
+    Unplaced {
+        /// The frame.
+        frame_id: String,
+        /// When they were taken, in ns since the epoch.
+        stamp_ns: i64,
+        /// Why its place is not known.
+        why: String,
+    },
     /// The robot's joints were measured, in any joint order; joints of other robots are ignored.
     JointState {
         /// Joint names.
@@ -34,6 +43,10 @@ pub enum Input {
     Replan,
     /// Forget poses and results.
     Clear,
+    /// From now on this is asked for. What is being planned is planned again: nobody must set out by limits that were lowered meanwhile.
+    Configure(Box<Config>),
+    /// From now on this robot is planned for. Poses, results, joint states and motions of the one before are forgotten.
+    Robot(Box<Robot>),
     /// A job was run.
     Finished(Box<Outcome>),
 }

@@ -47,12 +47,16 @@ impl MeasuredJoints {
         }
     }
 
+    pub(crate) fn age_s(&self, now_s: f64) -> f64 {
+        now_s - self.at_s
+    }
+
     /// Whether the robot was heard of within `allowed_s`.
     ///
     /// # Errors
     /// [`Refusal::StaleJointState`].
     pub(crate) fn fresh(&self, now_s: f64, allowed_s: f64) -> Result<(), Refusal> {
-        let age_s = now_s - self.at_s;
+        let age_s = self.age_s(now_s);
         // Written so that an age that is no number is too old.
         if age_s <= allowed_s { Ok(()) } else { Err(Refusal::StaleJointState { age_s, allowed_s }) }
     }

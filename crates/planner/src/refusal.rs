@@ -18,6 +18,16 @@ pub enum Refusal {
         /// Base frame of the robot.
         base: String,
     },
+    /// Poses in a frame whose place to the robot's base is not known.
+    #[error("the poses are in frame '{given}', and where the robot's base frame '{base}' is in it is not known: {why}")]
+    Unplaced {
+        /// Frame of the message.
+        given: String,
+        /// Base frame of the robot.
+        base: String,
+        /// What is missing.
+        why: String,
+    },
     /// A number that is no pose.
     #[error("pose {input_pose}: {reason}")]
     InvalidPose {
@@ -156,7 +166,12 @@ impl Refusal {
     pub fn is_bad_input(&self) -> bool {
         matches!(
             self,
-            Self::Config(_) | Self::Frame { .. } | Self::InvalidPose { .. } | Self::StartState(_) | Self::Order(_)
+            Self::Config(_)
+                | Self::Frame { .. }
+                | Self::Unplaced { .. }
+                | Self::InvalidPose { .. }
+                | Self::StartState(_)
+                | Self::Order(_)
         )
     }
 

@@ -69,10 +69,21 @@ impl Session {
         self.counters
     }
 
+    /// How long ago the robot was last heard of, in s; `None` where it never was.
+    pub fn joint_state_age_s(&self, now_s: f64) -> Option<f64> {
+        self.joints.as_ref().map(|joints| joints.age_s(now_s))
+    }
+
     /// Takes one input that arrives at `now_s`, in s on a clock that never steps back, and says what to do, in this order.
     pub fn handle(&mut self, now_s: f64, input: Input) -> Vec<Output> {
         match input {
             Input::Poses { frame_id, stamp_ns, poses } => self.poses(now_s, frame_id, stamp_ns, &poses),
+            Input::Unplaced { frame_id, stamp_ns, why } => {
+                self.counters.received += 1;
+                let (given, base) = (frame_id.clone(), self.robot.base_frame.clone());
+                let request = Request { frame_id, stamp_ns, ..Request::default() };
+                self.refuse_poses(now_s, request, Refusal::Unplaced { given, base, why })
+            }
             Input::JointState { names, positions, velocities } => {
                 match MeasuredJoints::read(&self.robot, now_s, &names, &positions, &velocities) {
                     Ok(Some(joints)) => self.joints = Some(joints),
@@ -92,6 +103,21 @@ impl Session {
                 self.waiting = false;
                 self.generation += 1;
                 vec![Output::Withdraw, reply(true, "poses and results are forgotten")]
+            }
+            Input::Configure(config) => {
+                self.config = Arc::new(*config);
+                if self.running && self.last.is_some() {
+                    self.generation += 1;
+                    self.waiting = true;
+                }
+                Vec::new()
+            }
+            Input::Robot(robot) => {
+                self.robot = Arc::new(*robot);
+                (self.joints, self.motion, self.last) = (None, None, None);
+                self.waiting = false;
+                self.generation += 1;
+                vec![Output::Withdraw]
             }
             Input::Finished(outcome) => self.finished(now_s, outcome),
         }
@@ -119,14 +145,15 @@ impl Session {
                 self.counters.superseded += u64::from(self.waiting);
                 self.request_plan(now_s)
             }
-            Err(refusal) => {
-                self.last = None;
-                self.waiting = false;
-                self.generation += 1;
-                let request = Request { frame_id, stamp_ns, ..Request::default() };
-                vec![self.refuse(now_s, request, refusal)]
-            }
+            Err(refusal) => self.refuse_poses(now_s, Request { frame_id, stamp_ns, ..Request::default() }, refusal),
         }
+    }
+
+    fn refuse_poses(&mut self, now_s: f64, request: Request, refusal: Refusal) -> Vec<Output> {
+        self.last = None;
+        self.waiting = false;
+        self.generation += 1;
+        vec![self.refuse(now_s, request, refusal)]
     }
 
     fn request_plan(&mut self, now_s: f64) -> Vec<Output> {

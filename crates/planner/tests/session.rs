@@ -109,6 +109,51 @@ fn the_same_poses_again_do_not_keep_their_plan_from_ending() {
     assert_eq!(kinds(&session.handle(NOW_S, Input::Finished(job.run()))), ["publish 1 plan"]);
 }
 
+/// Limits that were lowered while a plan was made hold for that plan too.
+#[test]
+fn another_configuration_makes_the_running_plan_anew() {
+    let mut session = session();
+    let job = only_job(session.handle(NOW_S, poses(line(), 1)));
+    let mut slower = Config { require_joint_state: false, ..Config::default() };
+    // Durations of short moves go with the inverse cube root of the jerk: 2.7 times as long.
+    (slower.timing.acceleration_scale, slower.timing.jerk_scale) = (0.05, 0.05);
+    assert!(session.handle(NOW_S, Input::Configure(Box::new(slower))).is_empty());
+    let next = only_job(session.handle(NOW_S, Input::Finished(job.clone().run())));
+    let slow = only_outcome(session.handle(NOW_S, Input::Finished(next.run())));
+    let duration_s = |outcome: &planner::Outcome| outcome.result.as_ref().unwrap().trajectory.duration_s();
+    assert!(duration_s(&slow) > 1.5 * duration_s(&job.run()));
+    // With nothing under way a configuration waits for the next poses.
+    assert!(session.handle(NOW_S, Input::Configure(Box::default())).is_empty());
+    assert_eq!((session.counters().planned, session.counters().discarded), (1, 1));
+}
+
+/// As bad poses do, they displace the ones before.
+#[test]
+fn poses_in_an_unknown_place_are_refused() {
+    let mut session = session();
+    let job = only_job(session.handle(NOW_S, poses(line(), 1)));
+    let unplaced = Input::Unplaced { frame_id: "moon".into(), stamp_ns: 2, why: "it is far".into() };
+    let refused = only_refusal(session.handle(NOW_S, unplaced));
+    assert!(refused.contains("'moon'") && refused.ends_with("is not known: it is far"), "{refused}");
+    assert!(session.handle(NOW_S, Input::Finished(job.run())).is_empty());
+    assert_eq!(kinds(&session.handle(NOW_S, Input::Replan)), ["reply false"]);
+}
+
+/// Nothing of one robot may be executed by another.
+#[test]
+fn another_robot_starts_afresh() {
+    let mut session = session();
+    let joints = measured(&session, HOME, &[]);
+    session.handle(NOW_S, joints);
+    assert_eq!(session.joint_state_age_s(NOW_S + 2.0), Some(2.0));
+    let job = only_job(session.handle(NOW_S, poses(line(), 1)));
+    let panda = Robot::shipped("panda").unwrap();
+    assert_eq!(kinds(&session.handle(NOW_S, Input::Robot(Box::new(panda)))), ["withdraw"]);
+    assert!(session.handle(NOW_S, Input::Finished(job.run())).is_empty(), "a plan for the robot before");
+    assert_eq!((session.robot().name.as_str(), session.joint_state_age_s(NOW_S)), ("panda", None));
+    assert_eq!(kinds(&session.handle(NOW_S, Input::Replan)), ["reply false"]);
+}
+
 #[test]
 fn a_lost_job_is_refused_and_does_not_block_the_next() {
     let mut session = session();

@@ -1,187 +1,328 @@
-//! The tasks around the session.
+//! What happens to everything that arrives.
+
+mod goals;
+mod poses;
+mod reports;
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
-use futures::StreamExt;
-use planner::{Input, Motion, Output, Session};
+use planner::{Input, Motion, Outcome, Output, Session};
+use r2r::control_msgs::action::FollowJointTrajectory;
 use r2r::std_srvs::srv::Trigger;
-use r2r::{Node, ParameterValue, ServiceRequest};
-use tokio::signal::unix::{SignalKind, signal};
+use r2r::{ActionClientGoal, ServiceRequest};
 use tokio::sync::mpsc;
 
-use crate::NodeError;
-use crate::arguments;
-use crate::interface::{Arrival, Publishers, arrivals};
-use crate::settings;
+use crate::collecting::Collecting;
+use crate::diagnostics::{Answer, Health, Level, OddPoses, Progress};
+use crate::execution::Controller;
+use crate::inbox::Inbox;
+use crate::interface::{Arrival, Interface, Publishers};
+use crate::lifecycle::LifeCycle;
+use crate::log::Log;
+use crate::managed::{LifeCycleCall, LifeCycleServices};
+use crate::message::{joint_state_input, trajectory_message};
+use crate::parameters::{ParameterCall, ParameterServices, Parameters};
+use crate::placing::Placing;
+use crate::stamps::Stamps;
 
-/// Data wakes the spinning thread at once; this only bounds how long a shutdown takes.
-const SPIN_TIMEOUT: Duration = Duration::from_millis(50);
-
-/// How long the middleware may take to say goodbye.
-const SHUTDOWN_DEADLINE: Duration = Duration::from_secs(3);
-
-/// Runs until SIGINT or SIGTERM.
-pub(crate) async fn run() -> Result<(), NodeError> {
-    let mut interrupt = signal(SignalKind::interrupt())?;
-    let mut terminate = signal(SignalKind::terminate())?;
-    let context = arguments::create_context()?;
-    let mut node = Node::create(context.clone(), "reorder", "")?;
-    let (robot, config) = settings::from_parameters(parameters(&node))?;
-    let logger = node.logger().to_owned();
-    let publishers = Publishers::create(&mut node)?;
-    let mut arrivals = arrivals(&mut node)?;
-    r2r::log_info!(
-        &logger,
-        "ready for {} ({} joints, base frame {}); one radian counts as {} m",
-        robot.name,
-        robot.chain.dof(),
-        robot.base_frame,
-        config.metres_per_radian
-    );
-
-    let stop = Arc::new(AtomicBool::new(false));
-    let mut spinning = tokio::task::spawn_blocking({
-        let stop = Arc::clone(&stop);
-        move || {
-            while !stop.load(Ordering::Relaxed) {
-                node.spin_once(SPIN_TIMEOUT);
-            }
-            drop(node);
-        }
-    });
-
-    let stamps = Stamps { started: Instant::now(), began_ns: 0, given: config.handover };
-    let mut shell = Shell::new(Session::new(robot, config), publishers, stamps, logger);
-    loop {
-        tokio::select! {
-            _ = interrupt.recv() => break,
-            _ = terminate.recv() => break,
-            // It ends by itself only by a panic inside the middleware; without it nothing would ever arrive again.
-            ended = &mut spinning => return Err(NodeError::Middleware(format!("{ended:?}"))),
-            Some(arrival) = arrivals.next() => match arrival {
-                Arrival::Message(input) => shell.handle(input, None),
-                Arrival::Service(input, request) => shell.handle(input, Some(request)),
-            },
-            Some(finished) = shell.finished.recv() => shell.handle(finished, None),
-        }
-    }
-    r2r::log_info!(&shell.logger, "shutting down");
-    stop.store(true, Ordering::Relaxed);
-    // Publishers and subscriptions go before the node, the node before the context.
-    drop((shell, arrivals));
-    if tokio::time::timeout(SHUTDOWN_DEADLINE, spinning).await.is_err() {
-        // Destroying a participant while its peers leave can hang for minutes inside Fast DDS (eProsima/Fast-DDS#6513), with
-        // signals ignored. Nothing of ours is pending any more, so the process leaves.
-        eprintln!("reorder_node: the middleware did not shut down within {SHUTDOWN_DEADLINE:?}; leaving without it");
-        std::process::exit(0);
-    }
-    drop(context);
-    Ok(())
-}
-
-/// Parameters as ROS gave them at the start.
-fn parameters(node: &Node) -> Vec<(String, ParameterValue)> {
-    let given = node.params.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    given.iter().map(|(name, parameter)| (name.clone(), parameter.value.clone())).collect()
-}
-
-/// The session's clock, and what it shows in ROS time.
-struct Stamps {
-    started: Instant,
-    /// ROS time when the session's clock was 0, in ns since the epoch.
-    began_ns: i64,
-    /// Whether trajectories are stamped; without a stamp they start when they arrive.
-    given: bool,
-}
-
-/// The two clocks may drift apart by this much. Following them more closely would shift a trajectory against the one it takes over
-/// from by the jitter of reading them.
-const SAME_CLOCK_NS: i64 = 1_000_000;
-
-impl Stamps {
-    fn now_s(&self) -> f64 {
-        self.started.elapsed().as_secs_f64()
-    }
-
-    /// When a motion begins, in ns since the epoch.
-    fn of(&mut self, motion: &Motion) -> i64 {
-        if !self.given {
-            return 0;
-        }
-        let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-        let began_ns = since_epoch.as_nanos() as i64 - self.started.elapsed().as_nanos() as i64;
-        if (began_ns - self.began_ns).abs() > SAME_CLOCK_NS {
-            self.began_ns = began_ns;
-        }
-        self.began_ns + (motion.starts_at_s * 1e9).round() as i64
-    }
-}
-
-struct Shell {
+/// The session and everything around it that is not the middleware's.
+pub(crate) struct Shell {
     session: Session,
+    parameters: Parameters,
+    life: LifeCycle,
+    health: Health,
+    collecting: Collecting,
+    odd_poses: OddPoses,
+    placing: Placing,
+    /// Where trajectories are goals of an action.
+    controller: Option<Controller>,
+    /// The last goal, and its handle once it is accepted, until it ends.
+    goal: (u64, Option<ActionClientGoal<FollowJointTrajectory::Action>>),
+    /// When the poses arrived that have no answer yet.
+    asked: Option<Instant>,
+    /// The worst level of the last report.
+    told: Level,
+    /// The last robot_description, so that the same one again changes nothing.
+    description: String,
     stamps: Stamps,
     publishers: Publishers,
-    logger: String,
-    finished: mpsc::UnboundedReceiver<Input>,
-    finish: mpsc::UnboundedSender<Input>,
+    services: Services,
+    name: String,
+    log: Log,
+    finish: mpsc::UnboundedSender<Finished>,
+}
+
+/// Where everything goes that the shell says.
+pub(crate) struct Outward {
+    pub(crate) publishers: Publishers,
+    /// Where trajectories are goals of an action.
+    pub(crate) controller: Option<Controller>,
+    /// The node's full name.
+    pub(crate) name: String,
+    pub(crate) log: Log,
+}
+
+/// What comes of a job.
+pub(crate) struct Finished {
+    outcome: Box<Outcome>,
+    took: Duration,
+}
+
+/// What the shell needs of the interface.
+struct Services {
+    poses: Arc<Inbox<r2r::geometry_msgs::msg::PoseArray>>,
+    single_poses: Arc<Inbox<r2r::geometry_msgs::msg::PoseStamped>>,
+    joint_states: Arc<Inbox<r2r::sensor_msgs::msg::JointState>>,
+    parameters: ParameterServices,
+    life_cycle: LifeCycleServices,
 }
 
 impl Shell {
-    fn new(session: Session, publishers: Publishers, stamps: Stamps, logger: String) -> Self {
-        let (finish, finished) = mpsc::unbounded_channel();
-        Self { session, stamps, publishers, logger, finished, finish }
+    /// A shell whose finished jobs go to `finish`, and the arrivals that it has to be given.
+    pub(crate) fn new(
+        session: Session,
+        parameters: Parameters,
+        interface: Interface,
+        outward: Outward,
+        finish: mpsc::UnboundedSender<Finished>,
+    ) -> (Self, futures::stream::BoxStream<'static, Arrival>) {
+        let Outward { publishers, controller, name, log } = outward;
+        let Interface {
+            arrivals, poses, single_poses, joint_states, parameters: parameter_services, life_cycle, ..
+        } = interface;
+        let shell = Self {
+            session,
+            parameters,
+            life: LifeCycle::unconfigured(),
+            health: Health {
+                execution: controller.as_ref().map(|_| Progress::new("nothing has been sent yet")),
+                ..Health::default()
+            },
+            collecting: Collecting::default(),
+            odd_poses: OddPoses::default(),
+            placing: Placing::default(),
+            controller,
+            goal: (0, None),
+            asked: None,
+            told: Level::Ok,
+            description: String::new(),
+            stamps: Stamps::new(),
+            publishers,
+            services: Services { poses, single_poses, joint_states, parameters: parameter_services, life_cycle },
+            name,
+            log,
+            finish,
+        };
+        (shell, arrivals)
     }
 
+    /// Tells what there is, and becomes active if that is wanted.
+    pub(crate) fn start(&mut self) {
+        let told = self.services.parameters.declare(&self.parameters, Stamps::now_ns());
+        self.check("telling the parameters", told);
+        if self.parameters.autostart {
+            for transition in ["configure", "activate"] {
+                let changed = self.services.life_cycle.change(&mut self.life, 0, transition, Stamps::now_ns());
+                self.check("telling the state", changed.map(drop));
+            }
+        }
+        let robot = self.session.robot();
+        self.log.info(format!(
+            "{} and ready for {} ({} joints, base frame {}); one radian counts as {} m",
+            self.life.state().1,
+            robot.name,
+            robot.chain.dof(),
+            robot.base_frame,
+            self.parameters.config.metres_per_radian
+        ));
+    }
+
+    pub(crate) fn take(&mut self, arrival: Arrival) {
+        match arrival {
+            Arrival::Poses(at, message) if self.life.is_active() => {
+                tracing::debug!(poses = message.poses.len(), frame = message.header.frame_id, "poses arrived");
+                if self.collecting.finish().is_some() {
+                    self.log
+                        .warn("the poses that came one by one so far are dropped: an array of poses takes their place");
+                }
+                self.ask(at, message);
+            }
+            Arrival::Pose(at, message) if self.life.is_active() => self.collect(at, message),
+            Arrival::Poses(..) | Arrival::Pose(..) => {
+                self.log.warn(format!("poses are ignored: the node is {}", self.life.state().1))
+            }
+            Arrival::JointState(message) => self.handle(joint_state_input(message), None),
+            Arrival::Description(urdf) => self.describe(urdf),
+            Arrival::Transforms(message, fixed) => {
+                let bad = self.placing.learn(&message, fixed);
+                if bad > 0 {
+                    self.log.warn(format!("{bad} transforms are ignored: their numbers are no rotation or no place"));
+                }
+                self.place();
+            }
+            Arrival::Cancel(request) => self.cancel(request),
+            Arrival::Trigger(Input::Replan, request) if !self.life.is_active() => {
+                let message = format!("the node is {}: activate it first", self.life.state().1);
+                self.respond(request, false, message);
+            }
+            Arrival::Trigger(Input::Replan, request) if self.collecting.len() > 0 => {
+                let message = format!("planning the {} poses that came one by one", self.collecting.len());
+                self.finish_collecting();
+                self.respond(request, true, message);
+            }
+            Arrival::Trigger(input, request) => {
+                if matches!(input, Input::Clear) {
+                    self.forget_waiting();
+                }
+                self.handle(input, Some(request));
+            }
+            Arrival::Parameters(call) => self.answer(call),
+            Arrival::LifeCycle(call) => self.live(call),
+        }
+    }
+
+    pub(crate) fn finish(&mut self, Finished { outcome, took }: Finished) {
+        self.health.planning.add(took.as_secs_f64());
+        self.handle(Input::Finished(outcome), None);
+    }
+
+    /// Gives an input to the session and does what comes of it.
     fn handle(&mut self, input: Input, mut request: Option<ServiceRequest<Trigger::Service>>) {
         for output in self.session.handle(self.stamps.now_s(), input) {
             match output {
                 Output::Run(job) => {
+                    tracing::debug!("planning begins");
                     let finish = self.finish.clone();
                     tokio::spawn(async move {
-                        let spare = job.clone();
+                        let (spare, began) = (job.clone(), Instant::now());
                         let ran = tokio::task::spawn_blocking(move || job.run()).await;
                         let outcome = ran.unwrap_or_else(|panic| spare.lost(panic.to_string()));
                         // The receiver is gone only when the node shuts down.
-                        let _ = finish.send(Input::Finished(outcome));
+                        let _ = finish.send(Finished { outcome, took: began.elapsed() });
                     });
                 }
-                Output::Publish(outcome) => {
-                    match &outcome.result {
-                        Ok(plan) => r2r::log_info!(
-                            &self.logger,
-                            "{} poses in {:?} order, {} points, {:.2} s",
-                            outcome.request.poses.len(),
-                            plan.ordering.verdict,
-                            plan.trajectory.points.len(),
-                            plan.trajectory.duration_s()
-                        ),
-                        Err(refusal) if outcome.motion.is_some() => {
-                            r2r::log_warn!(&self.logger, "stopping, because there is no trajectory: {refusal}");
-                        }
-                        Err(refusal) => r2r::log_warn!(&self.logger, "no trajectory: {refusal}"),
-                    }
-                    if let Err(error) =
-                        self.publishers.publish(self.session.robot(), &outcome, |motion| self.stamps.of(motion))
-                    {
-                        r2r::log_error!(&self.logger, "publishing failed: {error}");
-                    }
-                }
+                Output::Publish(outcome) => self.publish(&outcome),
                 Output::Reply { success, message } => {
-                    if let Some(request) = request.take()
-                        && let Err(error) = request.respond(Trigger::Response { success, message })
-                    {
-                        r2r::log_error!(&self.logger, "a service was not answered: {error}");
+                    if let Some(request) = request.take() {
+                        self.respond(request, success, message);
                     }
                 }
                 Output::Withdraw => {
-                    if let Err(error) = self.publishers.withdraw() {
-                        r2r::log_error!(&self.logger, "publishing failed: {error}");
-                    }
+                    self.health.last = None;
+                    let withdrawn = self.publishers.withdraw();
+                    self.check("withdrawing", withdrawn);
                 }
-                Output::Warn(sentence) => r2r::log_warn!(&self.logger, "{sentence}"),
+                Output::Warn(sentence) => self.log.warn(sentence),
             }
+        }
+    }
+
+    fn publish(&mut self, outcome: &Outcome) {
+        self.health.last = Some(match &outcome.result {
+            Ok(plan) => {
+                let sentence = format!(
+                    "{} poses in {:?} order, {} points, {:.2} s",
+                    outcome.request.poses.len(),
+                    plan.ordering.verdict,
+                    plan.trajectory.points.len(),
+                    plan.trajectory.duration_s()
+                );
+                self.log.info(&sentence);
+                Answer::planned(sentence)
+            }
+            Err(refusal) => {
+                let stops = if outcome.motion.is_some() { "stopping, because there is" } else { "there is" };
+                self.log.warn(format!("{stops} no trajectory: {refusal}"));
+                Answer::refused(refusal)
+            }
+        });
+        let robot = self.session.robot();
+        let (stamped, stamps, controller) =
+            (self.parameters.planner_config().handover, &mut self.stamps, self.controller.as_mut());
+        let (goal, publishers) = (&mut self.goal, &self.publishers);
+        let send = |motion: &Motion| {
+            // Without a stamp a trajectory starts when it arrives.
+            let stamp_ns = if stamped { stamps.of(motion) } else { 0 };
+            let message = trajectory_message(&motion.trajectory, &robot.base_frame, stamp_ns);
+            match controller {
+                Some(controller) => *goal = (controller.execute(message), None),
+                None => publishers.publish_trajectory(&message)?,
+            }
+            Ok(())
+        };
+        let published = publishers.publish(robot, outcome, send);
+        self.check("publishing", published);
+        if let Some(asked) = self.asked.take() {
+            tracing::debug!(latency = ?asked.elapsed(), "answered");
+            self.health.latency.add(asked.elapsed().as_secs_f64());
+        }
+        self.report_if_changed();
+    }
+
+    /// Plans for the robot that is described, if it is one.
+    fn describe(&mut self, urdf: String) {
+        if !self.parameters.robot.from_description || urdf == self.description {
+            return;
+        }
+        match self.parameters.robot.described(&urdf) {
+            Ok(robot) => {
+                self.log.info(format!("robot_description is taken up: {}, {} joints", robot.name, robot.chain.dof()));
+                self.health.robot_fault = None;
+                self.handle(Input::Robot(Box::new(robot)), None);
+            }
+            Err(why) => {
+                self.log.error(format!("robot_description is ignored: {why}"));
+                self.health.robot_fault = Some(why);
+            }
+        }
+        self.description = urdf;
+        self.report_if_changed();
+    }
+
+    fn answer(&mut self, call: ParameterCall) {
+        match self.services.parameters.answer(call, &mut self.parameters, Stamps::now_ns()) {
+            Ok(changed) if changed.is_empty() => {}
+            Ok(changed) => {
+                for (name, value) in changed {
+                    self.log.info(format!("{name} is now {value:?}"));
+                }
+                self.handle(Input::Configure(Box::new(self.parameters.planner_config())), None);
+            }
+            Err(error) => self.check("answering about parameters", Err(error)),
+        }
+    }
+
+    fn live(&mut self, call: LifeCycleCall) {
+        let before = self.life;
+        let answered = self.services.life_cycle.answer(call, &mut self.life, Stamps::now_ns());
+        self.check("answering about the state", answered);
+        if self.life == before {
+            return;
+        }
+        self.log.info(format!("{}, and was {}", self.life.state().1, before.state().1));
+        if before.is_active() {
+            // Nothing that was asked for before may come out after the next activation, or go on.
+            self.forget_waiting();
+            self.handle(Input::Clear, None);
+            if let Some(goal) = self.goal.1.take() {
+                tokio::spawn(async move { goals::cancelled(&goal).await });
+            }
+        }
+        self.report();
+    }
+
+    pub(crate) fn say_goodbye(&self) {
+        self.log.info("shutting down");
+    }
+
+    fn respond(&self, request: ServiceRequest<Trigger::Service>, success: bool, message: String) {
+        self.check("answering a service", request.respond(Trigger::Response { success, message }));
+    }
+
+    fn check(&self, doing: &str, result: r2r::Result<()>) {
+        if let Err(error) = result {
+            self.log.error(format!("{doing} failed: {error}"));
         }
     }
 }

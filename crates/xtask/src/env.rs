@@ -41,6 +41,10 @@ impl Layout {
         self.deps().join("ros")
     }
 
+    pub(crate) fn interfaces(&self) -> PathBuf {
+        self.deps().join("interfaces")
+    }
+
     pub(crate) fn mujoco(&self) -> PathBuf {
         self.deps().join("mujoco")
     }

@@ -14,6 +14,8 @@ pub(crate) enum Failure {
     NoVenv { python: PathBuf, module: &'static str },
     #[error("no C compiler found as `cc`: install one (Debian, Ubuntu: build-essential)")]
     NoCompiler,
+    #[error("no C++ compiler found as `c++`: install one (Debian, Ubuntu: build-essential)")]
+    NoCxxCompiler,
     #[error(
         "cannot reach the Python package index ({detail}): run again when the network is back; what was downloaded is kept"
     )]
@@ -24,6 +26,8 @@ pub(crate) enum Failure {
         "the sourced ROS 2 has no rclpy that `{python}` can import ({detail}): install it or unset AMENT_PREFIX_PATH"
     )]
     NoRclpy { python: String, detail: String },
+    #[error("the sourced ROS 2 in {prefixes} has no {package}: install it (ros-$ROS_DISTRO-{}) or unset AMENT_PREFIX_PATH", package.replace('_', "-"))]
+    NoPackage { prefixes: String, package: &'static str },
     #[error("there is no benchmark of {area}: choose one of {known}")]
     UnknownArea { area: String, known: String },
     #[error("{what} failed: {detail}")]

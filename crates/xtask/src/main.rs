@@ -4,6 +4,9 @@ mod bench;
 mod demo;
 mod env;
 mod failure;
+mod install;
+mod interfaces;
+mod launch;
 mod mujoco;
 mod process;
 mod python;
@@ -42,8 +45,19 @@ enum Chore {
         #[arg(long, default_value_t = 7)]
         seed: u64,
     },
-    /// Measure an area (geometry, ordering, manipulator) beside the libraries that others would use, and print the table
+    /// Measure an area (geometry, ordering, manipulator, node) beside the libraries that others would use, and print the table
     Bench { area: String },
+    /// Set up, build, and put the ROS package into an ament prefix, for `ros2 run` and `ros2 launch`
+    Install {
+        #[arg(long)]
+        prefix: PathBuf,
+    },
+    /// Set up, build, and start what a launch file asks for, where there is no `ros2 launch`
+    Launch {
+        file: PathBuf,
+        /// name:=value
+        arguments: Vec<String>,
+    },
     /// Set up, then run clippy and rustdoc over the workspace with warnings as errors
     Lint,
     /// Set up, then run every test there is
@@ -58,6 +72,8 @@ fn main() -> ExitCode {
         Chore::Soak { name, amount } => soak::run(&layout, name, amount),
         Chore::Score { folder, max_n, seed } => score::run(&layout, folder.as_deref(), max_n, seed),
         Chore::Bench { area } => bench::run(&layout, &area),
+        Chore::Install { prefix } => install::run(&layout, &prefix),
+        Chore::Launch { file, arguments } => launch::run(&layout, &file, &arguments),
         Chore::Lint => test::lint(&layout),
         Chore::Test => test::test(&layout),
     };

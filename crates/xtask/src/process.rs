@@ -56,6 +56,15 @@ impl Running {
         if status.success() { Ok(()) } else { Err(Failure::Command { what: self.name.into(), status }) }
     }
 
+    /// Itself while it runs, nothing once it has ended well.
+    pub(crate) fn unless_ended(mut self) -> Outcome<Option<Self>> {
+        match self.child.try_wait().map_err(Failure::io("wait for", self.name))? {
+            None => Ok(Some(self)),
+            Some(status) if status.success() => Ok(None),
+            Some(status) => Err(Failure::Command { what: self.name.into(), status }),
+        }
+    }
+
     /// Asks it to end as Ctrl-C does, and expects a clean exit.
     pub(crate) fn interrupt(self) -> Outcome {
         let process = self.child.id().to_string();

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-const REQUIREMENTS: &str = include_str!("../requirements.txt");
+pub(crate) const REQUIREMENTS: &str = include_str!("../requirements.txt");
 /// The ROS 2 wheels are built for this one.
 const ROS_WHEELS_PYTHON: (u32, u32) = (3, 11);
 const PACKAGES_AT_A_TIME: usize = 20;
@@ -41,7 +41,7 @@ pub(crate) fn environment_step(
     }
 }
 
-fn make(layout: &Layout, venv: &Path, requirements: &[&str]) -> Outcome {
+pub(crate) fn make(layout: &Layout, venv: &Path, requirements: &[&str]) -> Outcome {
     let stamp = layout.deps().join("stamps").join(venv.file_name().unwrap_or_default());
     // A stamp here is one of another recipe: start afresh, lest packages of the old one stay. Without a stamp an
     // interrupted installation goes on.

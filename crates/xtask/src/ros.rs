@@ -2,6 +2,7 @@
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
+use crate::interfaces::PACKAGES;
 use crate::python::{output, site_packages};
 use crate::setup::{Step, replace_folder};
 use std::env;
@@ -29,11 +30,12 @@ pub(crate) fn prefix_step(layout: &Layout, upstream: &str) -> Step {
 fn make_prefix(layout: &Layout) -> Outcome {
     let venv = layout.venv();
     replace_folder(&layout.ros(), |prefix| {
-        link(&venv.join("include"), &prefix.join("include"))?;
-        link(&venv.join("share"), &prefix.join("share"))?;
+        for part in ["include", "share"] {
+            overlay(&[venv.join(part), layout.interfaces().join(part)], &prefix.join(part))?;
+        }
         let lib = prefix.join("lib");
         fs::create_dir(&lib).map_err(Failure::io("create", &lib))?;
-        for library in libraries(&venv)? {
+        for library in libraries(&venv, &layout.interfaces())? {
             // The wheels bring the same vendored library several times over.
             let copy = lib.join(library.file_name().unwrap_or_default());
             if !copy.exists() {
@@ -45,18 +47,20 @@ fn make_prefix(layout: &Layout) -> Outcome {
     })
 }
 
-fn libraries(venv: &Path) -> Outcome<Vec<PathBuf>> {
+fn libraries(venv: &Path, interfaces: &Path) -> Outcome<Vec<PathBuf>> {
     let is_library = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         name.contains(".so") && !name.ends_with(PYTHON_HALF)
     };
-    let mut found: Vec<_> = entries(&venv.join("lib"))?.into_iter().filter(is_library).collect();
+    let mut found = entries(&venv.join("lib"))?;
+    found.extend(entries(&interfaces.join("lib"))?);
     for folder in entries(&site_packages(venv)?)? {
         let name = folder.file_name().unwrap_or_default().to_string_lossy();
         if name.starts_with("ros_") && name.ends_with(".libs") {
-            found.extend(entries(&folder)?.into_iter().filter(is_library));
+            found.extend(entries(&folder)?);
         }
     }
+    found.retain(is_library);
     Ok(found)
 }
 
@@ -93,6 +97,12 @@ pub(crate) fn check_sourced(layout: &Layout, prefixes: &str) -> Outcome {
         let log = String::from_utf8_lossy(&import.stderr);
         return Err(failed(log.lines().last().unwrap_or("no message").to_owned()));
     }
+    for package in PACKAGES {
+        let manifest = Path::new("share").join(package).join("package.xml");
+        if !env::split_paths(prefixes).any(|prefix| prefix.join(&manifest).exists()) {
+            return Err(Failure::NoPackage { prefixes: prefixes.to_owned(), package });
+        }
+    }
     println!("using the sourced ROS 2 in {prefixes}");
     Ok(())
 }
@@ -127,13 +137,52 @@ fn c_compiler() -> Outcome<PathBuf> {
     if works { Ok(compiler) } else { Err(Failure::NoCompiler) }
 }
 
-fn entries(folder: &Path) -> Outcome<Vec<PathBuf>> {
+/// One folder for several: links to what only one of them has, and a folder for a folder that more of them have.
+fn overlay(sources: &[PathBuf], folder: &Path) -> Outcome {
+    fs::create_dir(folder).map_err(Failure::io("create", folder))?;
+    for source in sources {
+        for entry in entries(source)? {
+            let name = entry.file_name().unwrap_or_default();
+            let copy = folder.join(name);
+            let same: Vec<_> = sources.iter().map(|source| source.join(name)).filter(|other| other.is_dir()).collect();
+            match same.len() {
+                _ if copy.exists() => {}
+                0 | 1 => link(&entry, &copy)?,
+                _ => overlay(&same, &copy)?,
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn entries(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let read = || fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>();
     let mut paths = read().map_err(Failure::io("read", folder))?;
     paths.sort();
     Ok(paths)
 }
 
-fn link(target: &Path, name: &Path) -> Outcome {
+pub(crate) fn link(target: &Path, name: &Path) -> Outcome {
     symlink(target, name).map_err(Failure::io("create link", name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_overlay_has_what_either_has() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |path: &str| folder.path().join(path);
+        for file in ["a/index/kinds/one", "a/one/text", "b/index/kinds/two", "b/two/text"] {
+            fs::create_dir_all(at(file).parent().unwrap()).unwrap();
+            fs::write(at(file), file).unwrap();
+        }
+        overlay(&[at("a"), at("b")], &at("both")).unwrap();
+        for (file, source) in [("index/kinds/one", "a"), ("index/kinds/two", "b"), ("one/text", "a"), ("two/text", "b")]
+        {
+            assert_eq!(fs::read_to_string(at("both").join(file)).unwrap(), format!("{source}/{file}"));
+        }
+        assert!(at("both/one").is_symlink() && !at("both/index").is_symlink());
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
-use crate::{mujoco, python, ros};
+use crate::{interfaces, mujoco, python, ros};
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,11 @@ pub(crate) fn run(layout: &Layout) -> Outcome {
     let mut steps = vec![python, mujoco::step(layout, &upstream), ros::libclang_step(layout, &upstream)?];
     match layout.sourced_ros() {
         Some(prefixes) => ros::check_sourced(layout, &prefixes)?,
-        None => steps.push(ros::prefix_step(layout, &upstream)),
+        None => {
+            let interfaces = interfaces::build_step(layout, &upstream)?;
+            let upstream = interfaces.recipe.clone();
+            steps.extend([interfaces, interfaces::python_step(layout, &upstream), ros::prefix_step(layout, &upstream)]);
+        }
     }
     take(layout, steps)
 }
@@ -86,7 +90,7 @@ pub(crate) fn replace_folder(folder: &Path, fill: impl FnOnce(&Path) -> Outcome)
     fs::rename(&partial, folder).map_err(Failure::io("create", folder))
 }
 
-fn remove_folder(folder: &Path) -> Outcome {
+pub(crate) fn remove_folder(folder: &Path) -> Outcome {
     match fs::remove_dir_all(folder) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Failure::io("remove", folder)(error)),
         _ => Ok(()),

@@ -14,6 +14,7 @@ const MAY_DEPEND_ON: &[(&str, &[&str])] = &[
     ("pose-bag", &["se3-geom"]),
     ("planner", &["se3-geom", "reorder", "manipulator", "pose-bag"]),
     ("mujoco-sim", &["planner"]),
+    ("mujoco-arm", &["planner", "mujoco-sim"]),
     ("reorder-node", &["planner"]),
     ("reorder-cli", &["planner", "pose-bag"]),
     ("xtask", &[]),

@@ -7,6 +7,7 @@
 mod figure;
 mod geometry;
 mod manipulator;
+mod node;
 mod ordering;
 mod peers;
 mod programs;
@@ -20,8 +21,12 @@ use figure::Figure;
 type Measure = fn(&Layout) -> Outcome<Vec<Figure>>;
 
 /// What can be measured. A new area is a file and a line here.
-const AREAS: [(&str, Measure); 3] =
-    [("geometry", geometry::measure), ("manipulator", manipulator::measure), ("ordering", ordering::measure)];
+const AREAS: [(&str, Measure); 4] = [
+    ("geometry", geometry::measure),
+    ("manipulator", manipulator::measure),
+    ("node", node::measure),
+    ("ordering", ordering::measure),
+];
 
 /// Measures an area, writes `target/bench/AREA.json` and prints it as a table. A bound that is missed is a figure, not a failure.
 pub(crate) fn run(layout: &Layout, area: &str) -> Outcome {
@@ -47,7 +52,7 @@ mod tests {
     fn an_unknown_area_is_refused_in_one_sentence_that_names_the_known_ones() {
         let folder = tempfile::tempdir().unwrap();
         let failure = run(&Layout::at(folder.path()), "astrology").unwrap_err().to_string();
-        assert_eq!(failure, "there is no benchmark of astrology: choose one of geometry, manipulator, ordering");
+        assert_eq!(failure, "there is no benchmark of astrology: choose one of geometry, manipulator, node, ordering");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing was made for it");
     }
 }

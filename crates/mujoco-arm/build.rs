@@ -1,0 +1,18 @@
+//! Tells the linker where ROS 2 and MuJoCo are, so that the arm starts without `LD_LIBRARY_PATH`.
+
+use std::env;
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-env-changed=AMENT_PREFIX_PATH");
+    println!("cargo::rerun-if-env-changed=MUJOCO_DYNAMIC_LINK_DIR");
+    // DT_RPATH, not DT_RUNPATH: only the former is searched for what ROS itself opens at run time.
+    println!("cargo::rustc-link-arg=-Wl,--disable-new-dtags");
+    // What is missing is said by the build scripts of r2r and mujoco-sim, which this crate depends on.
+    let ros = env::var("AMENT_PREFIX_PATH").unwrap_or_default();
+    let libraries = env::split_paths(&ros).map(|prefix| prefix.join("lib"));
+    let mujoco = env::var("MUJOCO_DYNAMIC_LINK_DIR").unwrap_or_default();
+    for directory in libraries.chain(env::split_paths(&mujoco)).filter_map(|path| path.canonicalize().ok()) {
+        println!("cargo::rustc-link-arg=-Wl,-rpath,{}", directory.display());
+    }
+}

@@ -1,0 +1,141 @@
+//! The controller of the arm: which trajectory it plays, and where the joints are to be at every time.
+//!
+//! As `joint_trajectory_controller` of ros2_control does, it connects points by quintics, starts at the header's stamp (at once where that
+//! is zero), and drops what it plays when something newer comes. It is stricter: a trajectory that would begin with a jump is refused.
+
+use mujoco_sim::Reference;
+use planner::manipulator::{JointPoint, JointTrajectory, Robot, TimingOptions, slow_to_stop};
+
+/// A joint may be this far from where a trajectory has it when it is taken up, in rad (m for slides): the noise of joint states.
+pub(crate) const START_TOLERANCE: f64 = 0.01;
+
+/// Plays trajectories.
+pub(crate) struct Controller {
+    robot: Robot,
+    playing: JointTrajectory,
+    /// When the time of what is played is 0, in s of the arm's clock.
+    since_s: f64,
+}
+
+/// Why a trajectory is not taken up, by the result codes of FollowJointTrajectory.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum Refused {
+    #[error("{0}")]
+    Goal(String),
+    #[error("{0}")]
+    Joints(String),
+    #[error("the trajectory ended {ago_s:.3} s ago by its header's stamp")]
+    Old { ago_s: f64 },
+}
+
+impl Controller {
+    /// At rest at a configuration, in the robot's joint order.
+    pub(crate) fn at_rest(robot: Robot, positions: &[f64]) -> Self {
+        let zeros = vec![0.0; positions.len()];
+        let point =
+            JointPoint { time_s: 0.0, positions: positions.to_vec(), velocities: zeros.clone(), accelerations: zeros };
+        let playing = JointTrajectory { joint_names: robot.chain.joint_names().to_vec(), points: vec![point] };
+        Self { robot, playing, since_s: 0.0 }
+    }
+
+    /// Takes a trajectory up that begins at `starts_at_s` of the arm's clock, in the past or the future, or at once.
+    pub(crate) fn play(
+        &mut self,
+        now_s: f64,
+        starts_at_s: Option<f64>,
+        trajectory: JointTrajectory,
+    ) -> Result<(), Refused> {
+        let mut next = self.in_own_order(trajectory)?;
+        let since_s = starts_at_s.unwrap_or(now_s);
+        let ends_at_s = since_s + next.duration_s();
+        if ends_at_s < now_s {
+            return Err(Refused::Old { ago_s: now_s - ends_at_s });
+        }
+        // Where it takes over: at its start, or now if that is over.
+        let takes_over_s = since_s.max(now_s);
+        let (from, to) = (self.playing.at(takes_over_s - self.since_s), next.at(takes_over_s - since_s));
+        for (kind, (from, to)) in ["position", "velocity"].into_iter().zip(from.iter().zip(&to)) {
+            if let Some(joint) = (0..from.len()).find(|&joint| (from[joint] - to[joint]).abs() > START_TOLERANCE) {
+                let (name, by) = (&next.joint_names[joint], to[joint] - from[joint]);
+                return Err(Refused::Goal(format!("{name} would begin with a jump of its {kind} by {by:.4}")));
+            }
+        }
+        if takes_over_s > now_s {
+            // Until then what is played goes on.
+            let before = self.playing.after((now_s - self.since_s).clamp(0.0, self.playing.duration_s()));
+            next = before.switched(takes_over_s - now_s, &next);
+            (self.playing, self.since_s) = (next, now_s);
+        } else {
+            (self.playing, self.since_s) = (next, since_s);
+        }
+        Ok(())
+    }
+
+    /// Stops on the path, as soon as the limits allow.
+    pub(crate) fn stop(&mut self, now_s: f64) {
+        let at_s = now_s - self.since_s;
+        // Where nothing better is found, the rest of what is played is a stop too.
+        if let Ok(stop) = slow_to_stop(&self.robot, &self.playing, at_s, &TimingOptions::default()) {
+            (self.playing, self.since_s) = (stop, now_s);
+        }
+    }
+
+    /// When the arm will rest, in s of its clock.
+    pub(crate) fn ends_at_s(&self) -> f64 {
+        self.since_s + self.playing.duration_s()
+    }
+
+    /// Where the joints are to be.
+    pub(crate) fn reference(&self, now_s: f64, timestep_s: f64) -> Reference {
+        let [position, velocity, acceleration, _] = self.playing.at(now_s - self.since_s);
+        let [_, mid_velocity, ..] = self.playing.at(now_s + 0.5 * timestep_s - self.since_s);
+        Reference { position, velocity, acceleration, mid_velocity }
+    }
+
+    /// The last point: where everything ends.
+    pub(crate) fn goal(&self) -> &[f64] {
+        self.playing.points.last().map_or(&[], |point| &point.positions)
+    }
+
+    /// Checks a trajectory, and puts its joints into the robot's order.
+    fn in_own_order(&self, trajectory: JointTrajectory) -> Result<JointTrajectory, Refused> {
+        let own = self.robot.chain.joint_names();
+        let given = &trajectory.joint_names;
+        let place = |name: &String| given.iter().position(|other| other == name);
+        let places: Option<Vec<usize>> = own.iter().map(place).collect();
+        let places = places.filter(|_| given.len() == own.len()).ok_or_else(|| {
+            Refused::Joints(format!("the joints are {}, but the arm has {}", given.join(", "), own.join(", ")))
+        })?;
+        if trajectory.points.is_empty() {
+            return Err(Refused::Goal("the trajectory has no points".into()));
+        }
+        let mut points = Vec::with_capacity(trajectory.points.len());
+        for (index, point) in trajectory.points.into_iter().enumerate() {
+            let pick = |kind: &str, values: &[f64]| -> Result<Vec<f64>, Refused> {
+                if values.len() != own.len() || !values.iter().all(|value| value.is_finite()) {
+                    return Err(Refused::Goal(format!("point {index} has not one finite {kind} for every joint")));
+                }
+                Ok(places.iter().map(|&place| values[place]).collect())
+            };
+            let before = points.last().map(|before: &JointPoint| before.time_s);
+            if point.time_s < 0.0 || before.is_some_and(|before| point.time_s <= before) {
+                return Err(Refused::Goal(format!("the time of point {index} does not come after the one before")));
+            }
+            points.push(JointPoint {
+                time_s: point.time_s,
+                positions: pick("position", &point.positions)?,
+                velocities: pick("velocity", &point.velocities)?,
+                accelerations: pick("acceleration", &point.accelerations)?,
+            });
+        }
+        let last = &points[points.len() - 1];
+        if last.velocities.iter().any(|velocity| velocity.abs() > START_TOLERANCE) {
+            return Err(Refused::Goal("the last point is not at rest".into()));
+        }
+        Ok(JointTrajectory { joint_names: own.to_vec(), points })
+    }
+}
+
+#[cfg(test)]
+#[path = "controller_tests.rs"]
+mod tests;

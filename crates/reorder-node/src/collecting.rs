@@ -1,0 +1,109 @@
+//! Poses that arrive one by one, until they make a set.
+
+use std::time::{Duration, Instant};
+
+use r2r::geometry_msgs::msg::{Pose, PoseArray, PoseStamped};
+use r2r::std_msgs::msg::Header;
+
+use crate::message::stamp_ns;
+
+/// The poses of one set so far.
+#[derive(Default)]
+pub(crate) struct Collecting {
+    /// The frame of all of them, and the latest stamp.
+    header: Header,
+    /// With their stamps in ns.
+    poses: Vec<(i64, Pose)>,
+    /// When the last arrived.
+    arrived: Option<Instant>,
+}
+
+/// What became of a pose.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Taken {
+    Added,
+    /// It was there already: same stamp, same pose.
+    Repeated,
+    /// Another pose had its stamp; the later message is the correction of the earlier.
+    Corrected,
+    /// It is in another frame than those before, which no set can be.
+    OtherFrame,
+}
+
+impl Collecting {
+    /// Takes a pose; stamps may come in any order, and one of zero says nothing.
+    pub(crate) fn take(&mut self, at: Instant, message: PoseStamped) -> Taken {
+        let PoseStamped { header, pose } = message;
+        if !self.poses.is_empty() && header.frame_id != self.header.frame_id {
+            return Taken::OtherFrame;
+        }
+        self.arrived = Some(at);
+        let stamp = stamp_ns(&header.stamp);
+        if self.poses.is_empty() || stamp > stamp_ns(&self.header.stamp) {
+            self.header = header;
+        }
+        match self.poses.iter_mut().rfind(|(known, _)| *known == stamp && stamp != 0) {
+            Some((_, known)) if *known == pose => Taken::Repeated,
+            Some((_, known)) => {
+                *known = pose;
+                Taken::Corrected
+            }
+            None => {
+                self.poses.push((stamp, pose));
+                Taken::Added
+            }
+        }
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// When nothing more is waited for, if nothing more comes.
+    pub(crate) fn deadline(&self, quiet_s: f64) -> Option<Instant> {
+        let last = self.arrived?;
+        (quiet_s > 0.0).then(|| last + Duration::from_secs_f64(quiet_s))
+    }
+
+    /// The set, with when its last pose arrived; the next pose begins another.
+    pub(crate) fn finish(&mut self) -> Option<(Instant, PoseArray)> {
+        let Self { header, poses, arrived } = std::mem::take(self);
+        Some((arrived?, PoseArray { header, poses: poses.into_iter().map(|(_, pose)| pose).collect() }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::message::header;
+
+    fn pose(frame: &str, stamp_ns: i64, x: f64) -> PoseStamped {
+        let mut message = PoseStamped { header: header(frame, stamp_ns), ..PoseStamped::default() };
+        message.pose.position.x = x;
+        message
+    }
+
+    #[test]
+    fn odd_messages_are_told_from_new_poses() {
+        let (mut set, now) = (Collecting::default(), Instant::now());
+        assert!(set.finish().is_none() && set.deadline(1.0).is_none());
+        for (message, taken) in [
+            (pose("base", 5, 0.5), Taken::Added),
+            (pose("base", 3, 0.3), Taken::Added),
+            (pose("base", 5, 0.5), Taken::Repeated),
+            (pose("base", 3, 0.4), Taken::Corrected),
+            (pose("tool", 6, 0.6), Taken::OtherFrame),
+            (pose("base", 0, 1.0), Taken::Added),
+            (pose("base", 0, 1.0), Taken::Added),
+        ] {
+            assert_eq!(set.take(now, message), taken);
+        }
+        assert_eq!((set.len(), set.deadline(0.0)), (4, None));
+        assert_eq!(set.deadline(2.0), Some(now + Duration::from_secs(2)));
+        let (_, array) = set.finish().unwrap();
+        assert_eq!(array.poses.iter().map(|pose| pose.position.x).collect::<Vec<_>>(), [0.5, 0.4, 1.0, 1.0]);
+        assert_eq!((array.header.frame_id.as_str(), stamp_ns(&array.header.stamp)), ("base", 5));
+        assert_eq!((set.len(), set.take(now, pose("tool", 1, 0.0))), (0, Taken::Added));
+    }
+}
