@@ -259,20 +259,3 @@ fn configuration_is_checked_by_name() {
         assert!(said.starts_with("configuration: ") && said.contains(word), "{said}");
     }
 }
-
-/// The documented parameter file holds the defaults.
-#[test]
-fn the_parameter_file_states_the_defaults() {
-    let text = include_str!("../../../config/reorder.yaml");
-    let document: serde_yaml::Value = serde_yaml::from_str(text).unwrap();
-    let mut parameters = document["reorder"]["ros__parameters"].as_mapping().unwrap().clone();
-    // What is the node's own; all else is the planner's.
-    for name in ["robot", "use_sim_time", "autostart", "execution", "action", "quiet_s", "transform_timeout_s"] {
-        assert!(parameters.remove(name).is_some(), "{name}");
-    }
-    let config = Config::from_yaml(&serde_yaml::to_string(&parameters).unwrap()).unwrap();
-    let stated = Config { path: Config::default().path, ..config.clone() };
-    assert_eq!(stated, Config::default());
-    assert_eq!(config.path.tolerance_m, Config::default().path.tolerance_m);
-    assert_eq!(config.path.tolerance_rad, Config::default().path.tolerance_rad);
-}
