@@ -1,7 +1,7 @@
 //! Output that appears whole or not at all.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
@@ -14,20 +14,25 @@ pub(crate) struct Pending {
     folder: TempDir,
     inside: PathBuf,
     destination: PathBuf,
-    /// Held as long as someone writes here.
+    /// Of the folder: held as long as someone writes here.
     _lock: File,
 }
 
 const PREFIX: &str = ".pose-bag-";
-const LOCK: &str = "lock";
 
-/// Locked before it has its name, so that nobody ever sees it unlocked while it is in use.
-fn lock(folder: &Path) -> std::io::Result<File> {
-    let unnamed = folder.join("locking");
-    let lock = File::create(&unnamed)?;
-    lock.lock()?;
-    fs::rename(unnamed, folder.join(LOCK))?;
-    Ok(lock)
+/// A new folder, locked. One that is removed as abandoned before it is locked is made again.
+fn locked_folder(parent: &Path) -> std::io::Result<(TempDir, File)> {
+    loop {
+        let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(parent)?;
+        let lock = match File::open(folder.path()) {
+            Err(error) if error.kind() == ErrorKind::NotFound => continue,
+            opened => opened?,
+        };
+        // Where the file system knows no locks, nothing is ever removed as abandoned either.
+        if lock.lock().is_err() || folder.path().exists() {
+            return Ok((folder, lock));
+        }
+    }
 }
 
 /// Removes what processes that were killed left of their output in a folder.
@@ -40,8 +45,9 @@ pub fn remove_abandoned(folder: impl AsRef<Path>) -> Result<(), BagError> {
         for entry in fs::read_dir(folder.as_ref())? {
             let path = entry?.path();
             let is_ours = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(PREFIX.as_bytes()));
-            // Without a lock it is about to get one, or was left in that very moment.
-            if is_ours && File::open(path.join(LOCK)).is_ok_and(|lock| lock.try_lock().is_ok()) {
+            let opened = if is_ours { File::open(&path).ok() } else { None };
+            // The lock is kept until it is gone.
+            if let Some(_lock) = opened.filter(|lock| lock.try_lock().is_ok()) {
                 fs::remove_dir_all(path)?;
             }
         }
@@ -61,10 +67,8 @@ impl Pending {
             reason: "the path ends in no name".into(),
         })?;
         let label = || destination.display().to_string();
-        let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(parent).map_err(BagError::io(label()))?;
-        let lock = lock(folder.path()).map_err(BagError::io(label()))?;
-        let inside = folder.path().join("whole").join(name);
-        fs::create_dir(folder.path().join("whole")).map_err(BagError::io(label()))?;
+        let (folder, lock) = locked_folder(parent).map_err(BagError::io(label()))?;
+        let inside = folder.path().join(name);
         Ok(Self { inside, folder, destination: destination.to_path_buf(), _lock: lock })
     }
 
