@@ -24,10 +24,12 @@ def plain(value):
     """A message as nested dictionaries, whichever library made its class."""
     if isinstance(value, np.ndarray):
         return value.tolist()
-    if isinstance(value, (list, tuple)):
+    if isinstance(value, (list, tuple, bytes)):
         return [plain(item) for item in value]
     if dataclasses.is_dataclass(value):
-        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value) if f.name != "__msgtype__"}
+        # rosbags counts constants, which are in capitals, among the fields.
+        names = [f.name for f in dataclasses.fields(value) if f.name != "__msgtype__" and not f.name.isupper()]
+        return {name: plain(getattr(value, name)) for name in names}
     if hasattr(value, "__slots__"):
         return {name: plain(getattr(value, name)) for name in value.__slots__}
     return value
