@@ -22,11 +22,30 @@ pub(crate) struct Channel {
     messages: Rc<Cell<usize>>,
 }
 
-/// The definition of a message in the bag, and the language it is in.
+/// The type of messages, as the bag defines it.
+#[derive(Default)]
 pub(crate) struct Schema {
     pub(crate) message_type: String,
-    pub(crate) language: String,
-    pub(crate) text: String,
+    difference: Option<String>,
+}
+
+impl Schema {
+    /// With the definition in the bag and the language that it is in.
+    pub(crate) fn new(message_type: String, language: &str, text: &str) -> Result<Self, Fault> {
+        let ours = definition(&message_type).filter(|_| language == "ros2msg" && !text.is_empty());
+        let difference = ours.and_then(|ours| difference(&message_type, text, ours));
+        Ok(Self { message_type: named(message_type)?, difference })
+    }
+}
+
+/// Longer than any name in ROS; thousands of longer ones would fill the memory.
+const MAX_NAME_BYTES: usize = 1024;
+
+fn named(name: String) -> Result<String, Fault> {
+    match name.len() {
+        0..=MAX_NAME_BYTES => Ok(name),
+        len => Err(Fault::Corrupt(format!("a topic, type or encoding has a name of {len} bytes"))),
+    }
 }
 
 /// How often each topic spoke so far, over the files of a bag.
@@ -34,14 +53,11 @@ pub(crate) struct Schema {
 pub(crate) struct Counts(HashMap<String, Rc<Cell<usize>>>);
 
 impl Counts {
-    pub(crate) fn channel(&mut self, topic: String, encoding: String, schema: Option<&Schema>) -> Channel {
+    pub(crate) fn channel(&mut self, topic: String, encoding: String, schema: &Schema) -> Result<Channel, Fault> {
+        let (topic, encoding) = (named(topic)?, named(encoding)?);
         let messages = self.0.entry(topic.clone()).or_default().clone();
-        let readable = schema.filter(|schema| schema.language == "ros2msg" && !schema.text.is_empty());
-        let difference = readable.and_then(|schema| {
-            definition(&schema.message_type).and_then(|ours| difference(&schema.message_type, &schema.text, ours))
-        });
-        let message_type = schema.map_or_else(String::new, |schema| schema.message_type.clone());
-        Channel { topic, message_type, encoding, difference, messages }
+        let Schema { message_type, difference } = schema;
+        Ok(Channel { topic, message_type: message_type.clone(), encoding, difference: difference.clone(), messages })
     }
 }
 

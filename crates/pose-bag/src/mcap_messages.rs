@@ -57,7 +57,7 @@ impl Records for Linker<'_, '_> {
         let mut fields = Fields(body);
         let read = match opcode {
             op::SCHEMA => fields.schema().map(|(id, schema)| {
-                self.schemas.insert(id, schema);
+                self.schemas.insert(id, schema?);
                 Ok(())
             }),
             op::CHANNEL => {
@@ -82,19 +82,23 @@ impl Records for Linker<'_, '_> {
 
 impl Linker<'_, '_> {
     fn add_channel(&mut self, id: u16, schema_id: u16, topic: String, encoding: String) -> Result<(), Fault> {
-        let schema = self.schemas.get(&schema_id);
-        if schema_id != 0 && schema.is_none() {
-            return Err(Fault::Corrupt(format!("topic {topic} has the unknown schema {schema_id}")));
+        let none = Schema::default();
+        let Some(schema) = self.schemas.get(&schema_id).or(Some(&none).filter(|_| schema_id == 0)) else {
+            return Err(Fault::Corrupt(format!("a topic has the unknown schema {schema_id}")));
+        };
+        let channel = self.counts.channel(topic, encoding, schema)?;
+        let is_same = |known: &Channel| {
+            known.topic == channel.topic
+                && known.encoding == channel.encoding
+                && known.message_type == channel.message_type
+        };
+        match self.channels.get(&id) {
+            Some(known) if is_same(known) => {}
+            Some(_) => return Err(Fault::Corrupt(format!("channel {id} is defined twice, as different topics"))),
+            None => {
+                self.channels.insert(id, channel);
+            }
         }
-        if let Some(known) = self.channels.get(&id) {
-            let message_type = schema.map_or("", |schema| &schema.message_type);
-            return if known.topic == topic && known.encoding == encoding && known.message_type == message_type {
-                Ok(())
-            } else {
-                Err(Fault::Corrupt(format!("channel {id} is defined twice, as different topics")))
-            };
-        }
-        self.channels.insert(id, self.counts.channel(topic, encoding, schema));
         Ok(())
     }
 
@@ -111,7 +115,7 @@ impl Linker<'_, '_> {
 /// The little-endian fields of a record, taken from its front; `None` where the bytes do not suffice.
 struct Fields<'a>(&'a [u8]);
 
-impl Fields<'_> {
+impl<'a> Fields<'a> {
     fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (head, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
@@ -122,18 +126,22 @@ impl Fields<'_> {
         self.array().map(u16::from_le_bytes)
     }
 
-    fn string(&mut self) -> Option<String> {
+    fn bytes(&mut self) -> Option<&'a [u8]> {
         let len = u32::from_le_bytes(self.array()?);
         let (head, rest) = self.0.split_at_checked(len.try_into().ok()?)?;
         self.0 = rest;
-        Some(String::from_utf8_lossy(head).into_owned())
+        Some(head)
+    }
+
+    fn string(&mut self) -> Option<String> {
+        self.bytes().map(|bytes| String::from_utf8_lossy(bytes).into_owned())
     }
 
     /// Identifier, and the schema.
-    fn schema(&mut self) -> Option<(u16, Schema)> {
+    fn schema(&mut self) -> Option<(u16, Result<Schema, Fault>)> {
         let id = self.u16()?;
-        let (message_type, language, text) = (self.string()?, self.string()?, self.string()?);
-        Some((id, Schema { message_type, language, text }))
+        let (message_type, language, text) = (self.string()?, self.string()?, self.bytes()?);
+        Some((id, Schema::new(message_type, &language, &String::from_utf8_lossy(text))))
     }
 
     /// Identifier, identifier of the schema, topic, encoding.

@@ -159,9 +159,9 @@ fn channels(database: &Connection, counts: &mut Counts) -> Result<HashMap<i64, C
         }
         let (id, topic, message_type, encoding): (i64, String, String, String) =
             (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
-        let bare = Schema { message_type, language: String::new(), text: String::new() };
+        let bare = Schema::new(message_type, "", "")?;
         let schema = schemas.get(&bare.message_type).unwrap_or(&bare);
-        channels.insert(id, counts.channel(topic, encoding, Some(schema)));
+        channels.insert(id, counts.channel(topic, encoding, schema)?);
     }
     Ok(channels)
 }
@@ -174,7 +174,8 @@ fn schemas(database: &Connection) -> Result<HashMap<String, Schema>, Fault> {
     let mut rows = statement.query([])?;
     while let Some(row) = rows.next()?.filter(|_| schemas.len() < MAX_TOPICS) {
         let (message_type, language, text): (String, String, String) = (row.get(0)?, row.get(1)?, row.get(2)?);
-        schemas.insert(message_type.clone(), Schema { message_type, language, text });
+        let schema = Schema::new(message_type, &language, &text)?;
+        schemas.insert(schema.message_type.clone(), schema);
     }
     Ok(schemas)
 }

@@ -188,6 +188,39 @@ fn bytes_after_the_end_are_damage() {
 }
 
 #[test]
+fn names_that_would_fill_the_memory_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = u32_bytes_prefixed(&vec![b'a'; 2000]);
+    let short = u32_bytes_prefixed(b"a");
+    let cases = [
+        record(4, 2013, &[&[1, 0, 0, 0][..], &long, &short].concat()),
+        record(4, 2013, &[&[1, 0, 0, 0][..], &short, &long].concat()),
+        record(3, 2016, &[&[1, 0][..], &long, &short, &short].concat()),
+    ];
+    for records in cases {
+        let error = read_bytes(folder.path(), &after_magic(&records)).unwrap_err().to_string();
+        assert!(error.contains("has a name of 2000 bytes"), "{error}");
+    }
+}
+
+#[test]
+fn files_without_chunks_or_index_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = fs::read(small_bag(folder.path(), Compression::Zstd, MESSAGES)).unwrap();
+    let path = folder.path().join("plain.mcap");
+    for chunked in [false, true] {
+        let options = mcap::WriteOptions::new().profile("ros2").use_chunks(chunked).emit_summary_records(false);
+        let options = options.emit_message_indexes(false).emit_summary_offsets(false);
+        let mut writer = options.create(fs::File::create(&path).unwrap()).unwrap();
+        for message in mcap::MessageStream::new(&bytes).unwrap() {
+            writer.write(&message.unwrap()).unwrap();
+        }
+        writer.finish().unwrap();
+        support::assert_same(&read_poses(&path, None).unwrap()[0].poses, &support::poses(MESSAGES));
+    }
+}
+
+#[test]
 fn chunks_by_lz4_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let whole = small_bag(folder.path(), Compression::None, MESSAGES);

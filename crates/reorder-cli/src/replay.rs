@@ -7,11 +7,13 @@ mod score;
 mod summary;
 
 use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use planner::pose_bag::{Grouping, Selection, remove_abandoned};
 use planner::reorder::{Options, Weight};
 use rayon::prelude::*;
@@ -85,6 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outputs = outputs(arguments, &inputs)?;
     let task = task(arguments)?;
     let bar = progress(&inputs);
+    let done = AtomicUsize::new(0);
     let one = |(input, output): (&Input, &Option<PathBuf>)| {
         let (bytes, told) = (input.bytes(), std::cell::Cell::new(0));
         let advance = |part: f64| {
@@ -93,6 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         };
         let summary = replay(input, output.as_deref(), &task, &advance);
         advance(1.0);
+        bar.set_message(format!("{} of {}, ", 1 + done.fetch_add(1, Relaxed), counted(inputs.len(), "bag")));
         say(&bar, &summary, inputs.len());
         summary
     };
@@ -151,7 +155,12 @@ fn task(arguments: &Arguments) -> Result<Task, Failure> {
     let (weight, score, minimum_verdict) =
         (arguments.metres_per_radian, arguments.score, arguments.minimum_verdict.into());
     let version = env!("CARGO_PKG_VERSION");
-    let settings = format!("{version} {selections:?} {options:?} {weight:?} {score} {minimum_verdict:?} {robot:?}");
+    let of_robot = robot.as_ref().map(|robot| {
+        let mut hasher = DefaultHasher::new();
+        format!("{robot:?}").hash(&mut hasher);
+        format!("{} {:016x}", robot.name, hasher.finish())
+    });
+    let settings = format!("{version} {selections:?} {options:?} {weight:?} {score} {minimum_verdict:?} {of_robot:?}");
     Ok(Task { selections, options, weight, score, robot, minimum_verdict, settings })
 }
 
@@ -161,9 +170,13 @@ fn progress(inputs: &[Input]) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(inputs.iter().map(Input::bytes).sum());
-    let template = "{spinner} [{bar:24}] {bytes} of {total_bytes}, {bytes_per_sec}, {eta} left";
+    let left = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+        // Nothing is known before a part is done.
+        let _ = if state.pos() > 0 { write!(out, "{}", HumanDuration(state.eta())) } else { write!(out, "some time") };
+    };
+    let template = "{spinner} [{bar:24}] {msg}{bytes} of {total_bytes}, {bytes_per_sec}, {left} left";
     if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style);
+        bar.set_style(style.with_key("left", left));
     }
     bar.enable_steady_tick(std::time::Duration::from_millis(100));
     bar

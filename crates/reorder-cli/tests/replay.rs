@@ -233,6 +233,7 @@ fn a_broken_bag_is_reported_and_the_others_go_on() {
             line("run_3.mcap")[5],
             "1.0000",
             "1.0000",
+            "-",
             "-"
         ]
     );

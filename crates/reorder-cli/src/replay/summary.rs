@@ -64,7 +64,7 @@ pub(crate) fn table(bags: &[BagSummary]) -> String {
     let mut rows = vec![HEADER.map(str::to_owned)];
     for bag in bags {
         if bag.sets.is_empty() {
-            let cells = [&bag.bag, "broken", "-", "-", "-", "-", "-", "-", "-"];
+            let cells = [&bag.bag, "broken", "-", "-", "-", "-", "-", "-", "-", "-"];
             rows.push(cells.map(str::to_owned));
         }
         for sets in bag.sets.chunk_by(|a, b| a.topic == b.topic) {
@@ -81,9 +81,10 @@ pub(crate) fn table(bags: &[BagSummary]) -> String {
         .collect()
 }
 
-const HEADER: [&str; 9] = ["bag", "status", "topic", "sets", "poses", "verdict", "adjacency", "tau", "trajectory"];
+const HEADER: [&str; 10] =
+    ["bag", "status", "topic", "sets", "poses", "verdict", "adjacency", "tau", "differs at", "trajectory"];
 
-fn row(bag: &BagSummary, sets: &[SetSummary]) -> [String; 9] {
+fn row(bag: &BagSummary, sets: &[SetSummary]) -> [String; 10] {
     let least = |of: fn(&Score) -> f64| {
         let scores = sets.iter().filter_map(|set| set.score.as_ref()).map(of);
         scores.reduce(f64::min).map_or("-".to_owned(), |least| format!("{least:.4}"))
@@ -113,8 +114,16 @@ fn row(bag: &BagSummary, sets: &[SetSummary]) -> [String; 9] {
         verdicts(sets),
         least(|score| score.adjacency),
         least(|score| score.kendall_tau),
+        first_difference(sets).unwrap_or_else(|| "-".to_owned()),
         trajectory,
     ]
+}
+
+/// The rows of the first recorded pair that an order does not follow, and of several sets which one it is.
+fn first_difference(sets: &[SetSummary]) -> Option<String> {
+    let (set, [a, b]) =
+        sets.iter().enumerate().find_map(|(set, of)| Some((set, of.score.as_ref()?.first_difference?)))?;
+    Some(if sets.len() > 1 { format!("set {set}: {a}–{b}") } else { format!("{a}–{b}") })
 }
 
 fn verdicts(sets: &[SetSummary]) -> String {
