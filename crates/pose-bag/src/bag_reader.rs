@@ -6,7 +6,7 @@ use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use crate::BagError;
-use crate::bounded::{unpack_file, unpack_message};
+use crate::bounded::{Budget, unpack_file};
 use crate::channel::{BagMessage, Counts};
 use crate::mcap_messages::{has_magic, read_mcap};
 use crate::mcap_records::Fault;
@@ -133,10 +133,10 @@ impl BagReader {
         let is_packed = self.packed == Packed::Files && Self::storage_of(path).map_err(Fault::Visit)?.is_none();
         match (self.storage, is_packed) {
             (Storage::Mcap, _) if packed_messages => {
-                let mut unpacked = Vec::new();
+                let (mut budget, mut unpacked) = (Budget::default(), Vec::new());
                 let visit = &mut |message: &BagMessage<'_>| {
                     let index = message.index();
-                    unpack_message(message.data, &mut unpacked).map_err(|error| BagError::Corrupt {
+                    budget.unpack_message(message.data, &mut unpacked).map_err(|error| BagError::Corrupt {
                         file: file.into(),
                         messages_read: index as u64,
                         reason: format!("a message cannot be decompressed: {error}"),

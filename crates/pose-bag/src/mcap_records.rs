@@ -10,7 +10,7 @@ use std::io::{self, ErrorKind, Read};
 use mcap::records::op;
 
 use crate::BagError;
-use crate::bounded::{MAX_MESSAGE_BYTES, is_bomb};
+use crate::bounded::{Budget, MAX_MESSAGE_BYTES};
 
 /// Writers keep chunks to a few megabytes.
 const MAX_CHUNK_BYTES: u64 = 128 << 20;
@@ -44,11 +44,11 @@ pub(crate) trait Records {
 /// Reads a file from behind its first magic to its end.
 pub(crate) fn read_file(source: &mut impl Read, records: &mut impl Records) -> Result<(), Fault> {
     let mut in_data = true;
-    let (mut body, mut chunk) = (Vec::new(), Vec::new());
+    let (mut body, mut chunk, mut budget) = (Vec::new(), Vec::new(), Budget::default());
     while let Some((opcode, len)) = record_head(source)? {
         match opcode {
             op::CHUNK if in_data => {
-                if let Err(why) = read_chunk(&mut source.by_ref().take(len), &mut chunk, records)? {
+                if let Err(why) = read_chunk(&mut source.by_ref().take(len), &mut chunk, &mut budget, records)? {
                     records.lost(why);
                 }
             }
@@ -84,9 +84,10 @@ fn read_end(source: &mut impl Read) -> Result<(), Fault> {
 fn read_chunk(
     chunk: &mut io::Take<impl Read>,
     inside: &mut Vec<u8>,
+    budget: &mut Budget,
     records: &mut impl Records,
 ) -> Result<Result<(), String>, Fault> {
-    let unpacked = unpack_chunk(chunk, inside);
+    let unpacked = unpack_chunk(chunk, inside, budget);
     // A stream that ends early is the file's end if the file ends there, and a damaged chunk if it goes on.
     let unread = chunk.limit();
     let cut = skip(chunk, unread).err();
@@ -105,7 +106,11 @@ fn read_chunk(
 }
 
 /// Decompresses the records of a chunk and checks them against its header.
-fn unpack_chunk(chunk: &mut io::Take<impl Read>, inside: &mut Vec<u8>) -> Result<Result<(), String>, Fault> {
+fn unpack_chunk(
+    chunk: &mut io::Take<impl Read>,
+    inside: &mut Vec<u8>,
+    budget: &mut Budget,
+) -> Result<Result<(), String>, Fault> {
     inside.clear();
     let _times = read_array::<16>(chunk)?;
     let claimed = u64::from_le_bytes(read_array(chunk)?);
@@ -121,7 +126,7 @@ fn unpack_chunk(chunk: &mut io::Take<impl Read>, inside: &mut Vec<u8>) -> Result
     if size > present {
         return Ok(Err(format!("a chunk claims {size} compressed bytes in a record with {present} left")));
     }
-    if claimed > MAX_CHUNK_BYTES || is_bomb(claimed, size) {
+    if claimed > MAX_CHUNK_BYTES || !budget.allows(size, claimed) {
         return Ok(Err(format!("a chunk of {size} bytes claims to hold {claimed}, which is not believed")));
     }
     let compressed = chunk.by_ref().take(size);

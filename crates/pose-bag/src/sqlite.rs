@@ -12,7 +12,7 @@ use rusqlite::limits::Limit;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 use tempfile::NamedTempFile;
 
-use crate::bounded::{MAX_MESSAGE_BYTES, unpack_message};
+use crate::bounded::{Budget, MAX_MESSAGE_BYTES};
 use crate::channel::{BagMessage, Channel, Counts, Schema, Visit};
 use crate::mcap_records::Fault;
 
@@ -69,7 +69,8 @@ impl Reader<'_, '_> {
         let channels = channels(&database, counts)?;
         let mut statement = database.prepare("SELECT rowid, topic_id, timestamp, data FROM messages NOT INDEXED")?;
         let mut rows = statement.query([])?;
-        let (mut last, mut bytes, mut unpacked) = (i64::MIN, 0, Vec::new());
+        let (mut last, mut bytes) = (i64::MIN, 0);
+        let (mut budget, mut unpacked) = (Budget::default(), Vec::new());
         while let Some(row) = rows.next()? {
             let (number, topic, time_ns): (i64, i64, i64) = (row.get(0)?, row.get(1)?, row.get(2)?);
             let data =
@@ -83,7 +84,7 @@ impl Reader<'_, '_> {
                 return Err(Fault::Corrupt(format!("a message belongs to the unknown topic {topic}")));
             };
             let data = if self.packed_messages {
-                let unpacking = unpack_message(data, &mut unpacked);
+                let unpacking = budget.unpack_message(data, &mut unpacked);
                 unpacking
                     .map_err(|error| Fault::Corrupt(format!("message {number} cannot be decompressed: {error}")))?;
                 &unpacked

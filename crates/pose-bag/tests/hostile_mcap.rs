@@ -139,6 +139,8 @@ fn bombs_are_refused_before_they_unfold() {
         (packed_zeros(100 * mib, 4000), "a chunk holds more than the 4000 bytes that it claims"),
         (packed_zeros(mib, 1 << 60), "claims to hold 1152921504606846976, which is not believed"),
         (packed_zeros(4000, 4001), "a chunk holds less than the 4001 bytes that it claims"),
+        // 1000 times 9 MiB out of a kilobyte or so each: a few are believed, and all others not.
+        (packed_zeros(9 * mib, 9 << 20).repeat(1000), "claims to hold 9437184, which is not believed"),
     ];
     for (chunk, expected) in cases {
         let started = std::time::Instant::now();
