@@ -57,7 +57,7 @@ pub struct Plan {
     pub path_report: PathReport,
 }
 
-/// Poses on each segment of [`Plan::path`].
+/// Poses on each segment of [`path_along`].
 const PATH_POSES_PER_SEGMENT: usize = 4;
 
 impl Plan {
@@ -66,17 +66,22 @@ impl Plan {
         self.ordering.distinct().iter().map(|&i| request.poses[i]).collect()
     }
 
-    /// The curve between the poses too, for people to look at: four poses a segment, and its end.
+    /// [`path_along`] the spline.
     pub fn path(&self) -> Vec<Pose> {
-        let (_, last) = self.spline.domain();
-        let part = |k: usize| k as f64 / PATH_POSES_PER_SEGMENT as f64;
-        let segment = |knots: &[f64]| {
-            let (from, to) = (knots[0], knots[1]);
-            (0..PATH_POSES_PER_SEGMENT).map(move |k| from + (to - from) * part(k))
-        };
-        let parameters = self.spline.knots().windows(2).flat_map(segment).chain([last]);
-        parameters.map(|t| self.spline.pose(t)).collect()
+        path_along(&self.spline)
     }
+}
+
+/// A curve between its poses too, for people to look at: four poses a segment, and its end.
+pub fn path_along(spline: &PoseSpline) -> Vec<Pose> {
+    let (_, last) = spline.domain();
+    let part = |k: usize| k as f64 / PATH_POSES_PER_SEGMENT as f64;
+    let segment = |knots: &[f64]| {
+        let (from, to) = (knots[0], knots[1]);
+        (0..PATH_POSES_PER_SEGMENT).map(move |k| from + (to - from) * part(k))
+    };
+    let parameters = spline.knots().windows(2).flat_map(segment).chain([last]);
+    parameters.map(|t| spline.pose(t)).collect()
 }
 
 /// Orders, interpolates, follows, times and audits.
@@ -99,7 +104,7 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
         return Err(not_certain_enough(ordering, config));
     }
     let distinct = ordering.distinct();
-    let spline = interpolate(poses, &distinct, config, ordering.topology)?;
+    let spline = interpolate(poses, &ordering, config.metres_per_radian)?;
 
     let at_fault = |source: ManipulatorError| Refusal::Manipulator {
         robot: robot.name.clone(),
@@ -174,10 +179,15 @@ fn not_certain_enough(ordering: Ordering, config: &Config) -> Refusal {
     }
 }
 
-fn interpolate(poses: &[Pose], distinct: &[usize], config: &Config, topology: Topology) -> Result<PoseSpline, Refusal> {
+/// The C² curve through the distinct poses in order, its knots spaced by the metric in which one radian counts as so many metres.
+///
+/// # Errors
+/// [`Refusal::Spline`] where no such curve is unique.
+pub fn interpolate(poses: &[Pose], ordering: &Ordering, metres_per_radian: f64) -> Result<PoseSpline, Refusal> {
+    let distinct = ordering.distinct();
     let ordered: Vec<Pose> = distinct.iter().map(|&i| poses[i]).collect();
-    let metric = Se3::with_metres_per_radian(config.metres_per_radian).unwrap_or_default();
-    let (ends, knots) = match topology {
+    let metric = Se3::with_metres_per_radian(metres_per_radian).unwrap_or_default();
+    let (ends, knots) = match ordering.topology {
         Topology::Open => (Ends::Natural, centripetal_knots(&metric, &ordered)),
         Topology::Closed => {
             let mut round = ordered.clone();

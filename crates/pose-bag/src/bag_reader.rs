@@ -1,157 +1,194 @@
-//! Poses out of bags.
+//! Messages out of bags, one at a time.
 
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
-use se3_geom::Pose;
-use serde::de::DeserializeOwned;
-
 use crate::BagError;
-use crate::cdr::decode;
-use crate::mcap_messages::{RawMessage, for_each_message};
-use crate::msg::{self, Message};
-use crate::pose_set::{Origin, PoseSet};
+use crate::bounded::{Budget, unpack_file};
+use crate::channel::{BagMessage, Counts};
+use crate::mcap_messages::{has_magic, read_mcap};
+use crate::mcap_records::Fault;
+use crate::metadata::{Packed, Storage, stored_in};
+use crate::sqlite::{self, read_sqlite};
 
-/// Type of the messages of every topic that has messages.
-type Topics = BTreeMap<String, String>;
+/// Damages of a bag that are told one by one.
+const MAX_LOSSES: usize = 100;
 
-/// Poses of one topic of a bag, which consists of MCAP files; `bag` names it in errors.
+/// A bag: the folder of a rosbag2 bag (MCAP or SQLite, also split and compressed), one MCAP file, or one `.db3` file.
 ///
-/// Messages are taken in the order in which they were recorded.
-pub(crate) fn read_bag(bag: &Path, files: &[PathBuf], topic: Option<&str>) -> Result<Vec<PoseSet>, BagError> {
-    let name = bag.display().to_string();
-    let mut topics = Topics::new();
-    for file in files {
-        for_each_message(file, &mut |message| {
-            topics.entry(message.channel.topic.clone()).or_insert_with(|| message.channel.message_type.clone());
-            Ok(())
-        })?;
-    }
-    let topic = choose(&name, &topics, topic)?;
-    let mut collector = Collector { topic, messages: 0, sets: Vec::new() };
-    for file in files {
-        for_each_message(file, &mut |message| collector.take(file, &message))?;
-    }
-    if collector.sets.iter().all(|(_, set)| set.poses.is_empty()) {
-        return Err(BagError::Empty { file: name });
-    }
-    Ok(collector.into_sets())
+/// Whatever its size, one chunk or message of it is in memory at a time.
+///
+/// ```
+/// use pose_bag::{BagReader, msg::PoseArray};
+/// # fn main() -> Result<(), pose_bag::BagError> {
+/// # let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/lasa_sine");
+/// let bag = BagReader::open(folder)?;
+/// let mut poses = 0;
+/// let losses = bag.for_each(&mut |message| {
+///     if message.message_type() == "geometry_msgs/msg/PoseArray" {
+///         poses += message.decode::<PoseArray>()?.poses.len();
+///     }
+///     Ok(())
+/// })?;
+/// assert!(poses > 100 && losses.is_empty());
+/// # Ok(()) }
+/// ```
+#[derive(Debug)]
+pub struct BagReader {
+    name: String,
+    files: Vec<PathBuf>,
+    storage: Storage,
+    packed: Packed,
 }
 
-fn is_pose_type(message_type: &str) -> bool {
-    [msg::PoseArray::TYPE, msg::PoseStamped::TYPE].contains(&message_type)
-}
-
-fn choose(bag: &str, topics: &Topics, wanted: Option<&str>) -> Result<String, BagError> {
-    let file = || bag.to_owned();
-    let list = |only_poses: bool| {
-        let listed = topics.iter().filter(|(_, message_type)| !only_poses || is_pose_type(message_type));
-        let listed: Vec<_> = listed.map(|(topic, message_type)| format!("{topic} ({message_type})")).collect();
-        if listed.is_empty() { "none".to_owned() } else { listed.join(", ") }
-    };
-    if let Some(topic) = wanted {
-        return match topics.get(topic) {
-            Some(message_type) if is_pose_type(message_type) => Ok(topic.to_owned()),
-            _ => Err(BagError::NotAPoseTopic { file: file(), topic: topic.into(), topics: list(false) }),
+impl BagReader {
+    /// Looks at the folder's `metadata.yaml`, or the first bytes of the file.
+    ///
+    /// # Errors
+    /// [`BagError`] where it is no bag.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, BagError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        if path.is_dir() {
+            let stored = stored_in(path)?;
+            return Ok(Self { name, files: stored.files, storage: stored.storage, packed: stored.packed });
+        }
+        let storage = match Self::storage_of(path)? {
+            Some(storage) => storage,
+            None if path.extension().is_some_and(|extension| extension == "mcap") => Storage::Mcap,
+            None if path.extension().is_some_and(|extension| extension == "db3") => Storage::Sqlite,
+            None => return Err(BagError::UnknownFormat { file: name }),
         };
+        Ok(Self { name, files: vec![path.to_path_buf()], storage, packed: Packed::Nothing })
     }
-    let mut with_poses = topics.iter().filter(|(_, message_type)| is_pose_type(message_type));
-    match (with_poses.next(), with_poses.next()) {
-        (Some((topic, _)), None) => Ok(topic.clone()),
-        (None, _) => Err(BagError::NoPoseTopic { file: file(), topics: list(false) }),
-        (Some(_), Some(_)) => Err(BagError::SeveralPoseTopics { file: file(), topics: list(true) }),
-    }
-}
 
-struct Collector {
-    topic: String,
-    /// Messages of the topic so far.
-    messages: usize,
-    /// With the log time of each set; the poses of stamped messages are sets of one until the end.
-    sets: Vec<(u64, PoseSet)>,
-}
-
-impl Collector {
-    fn take(&mut self, file: &Path, message: &RawMessage<'_>) -> Result<(), BagError> {
-        if message.channel.topic != self.topic {
-            return Ok(());
-        }
-        let place = Place { file, topic: &self.topic, message: self.messages };
-        let encoding = &message.channel.encoding;
-        if encoding != "cdr" {
-            let (file, topic) = (place.file(), self.topic.clone());
-            return Err(BagError::MessageEncoding { file, topic, encoding: encoding.clone() });
-        }
-        let (header, poses, stamps_ns) = if message.channel.message_type == msg::PoseArray::TYPE {
-            let array: msg::PoseArray = place.decode(message.data)?;
-            (array.header, place.poses(&array.poses)?, None)
+    /// What the first bytes of a file say.
+    pub(crate) fn storage_of(path: &Path) -> Result<Option<Storage>, BagError> {
+        let in_file = || BagError::io(path.display().to_string());
+        let mut start = Vec::new();
+        let opened = File::open(path).map_err(in_file())?;
+        opened.take(sqlite::MAGIC.len() as u64).read_to_end(&mut start).map_err(in_file())?;
+        Ok(if has_magic(&start) {
+            Some(Storage::Mcap)
         } else {
-            let stamped: msg::PoseStamped = place.decode(message.data)?;
-            let stamps_ns = vec![stamped.header.stamp.to_nanos()];
-            (stamped.header, place.poses(&[stamped.pose])?, Some(stamps_ns))
-        };
-        let origin = Origin { file: file.to_path_buf(), topic: Some(self.topic.clone()), message: Some(self.messages) };
-        let set = PoseSet { frame_id: header.frame_id, poses, stamps_ns, origin };
-        if let Some((_, first)) = self.sets.first().filter(|_| set.stamps_ns.is_some())
-            && first.frame_id != set.frame_id
-        {
-            return Err(BagError::MixedFrames {
-                file: place.file(),
-                topic: self.topic.clone(),
-                message: self.messages,
-                expected: first.frame_id.clone(),
-                found: set.frame_id,
-            });
-        }
-        self.sets.push((message.log_time_ns, set));
-        self.messages += 1;
-        Ok(())
+            start.starts_with(sqlite::MAGIC).then_some(Storage::Sqlite)
+        })
     }
 
-    fn into_sets(mut self) -> Vec<PoseSet> {
-        self.sets.sort_by_key(|(log_time_ns, _)| *log_time_ns);
-        let mut sets: Vec<PoseSet> = Vec::new();
-        for (_, set) in self.sets {
-            match (sets.last_mut(), set.stamps_ns) {
-                (Some(PoseSet { poses, stamps_ns: Some(stamps), origin, .. }), Some(more)) => {
-                    poses.extend(set.poses);
-                    stamps.extend(more);
-                    origin.message = None;
+    /// What it was opened as.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its MCAP or SQLite files, in the order of recording.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
+    /// Hands every message to `visit`, file after file, in the order in which they were recorded. What `visit` refuses ends it.
+    ///
+    /// What is damaged or cut off is passed over as far as the rest can be told apart from it; the answer says what was lost, and
+    /// is empty for a whole bag. [`BagError::is_loss`] is true of all of it.
+    ///
+    /// # Errors
+    /// What `visit` returned, or where a file is no bag at all.
+    pub fn for_each(
+        &self,
+        visit: &mut dyn FnMut(&BagMessage<'_>) -> Result<(), BagError>,
+    ) -> Result<Vec<BagError>, BagError> {
+        let mut counts = Counts::default();
+        let mut losses = Vec::new();
+        for path in &self.files {
+            let file = path.display().to_string();
+            let mut lost = |messages_read, fault| {
+                if losses.len() < MAX_LOSSES {
+                    losses.push(named(&file, messages_read, fault));
                 }
-                (_, stamps_ns) => sets.push(PoseSet { stamps_ns, ..set }),
+            };
+            match self.read_file(path, &file, &mut counts, visit, &mut lost) {
+                // Of a split bag the other files are still worth something.
+                Err(fault @ Fault::Io(_)) if self.files.len() > 1 => lost(0, fault),
+                Err(fault) => return Err(named(&file, 0, fault)),
+                Ok(()) => {}
             }
         }
-        sets
+        Ok(losses)
+    }
+
+    fn read_file(
+        &self,
+        path: &Path,
+        file: &str,
+        counts: &mut Counts,
+        visit: &mut dyn FnMut(&BagMessage<'_>) -> Result<(), BagError>,
+        lost: &mut dyn FnMut(u64, Fault),
+    ) -> Result<(), Fault> {
+        let opened = File::open(path)?;
+        let size = opened.metadata()?.len();
+        let mut source = BufReader::with_capacity(1 << 16, opened);
+        let packed_messages = self.packed == Packed::Messages;
+        // rosbag2 leaves the last file of a recording that was killed as it is.
+        let is_packed = self.packed == Packed::Files && Self::storage_of(path).map_err(Fault::Visit)?.is_none();
+        match (self.storage, is_packed) {
+            (Storage::Mcap, _) if packed_messages => {
+                let (mut budget, mut unpacked) = (Budget::default(), Vec::new());
+                let visit = &mut |message: &BagMessage<'_>| {
+                    let index = message.index();
+                    budget.unpack_message(message.data, &mut unpacked).map_err(|error| BagError::Corrupt {
+                        file: file.into(),
+                        messages_read: index as u64,
+                        reason: format!("a message cannot be decompressed: {error}"),
+                    })?;
+                    visit(&BagMessage { data: &unpacked, ..*message })
+                };
+                read_mcap(&mut source, file, counts, visit, lost)
+            }
+            (Storage::Mcap, false) => read_mcap(&mut source, file, counts, visit, lost),
+            (Storage::Sqlite, false) => read_sqlite(path, packed_messages, file, counts, visit, lost),
+            (storage, true) => {
+                let mut whole = tempfile::NamedTempFile::new()?;
+                let unpacked = unpack_file(&mut source, size, &mut whole);
+                if let Err(error) = &unpacked {
+                    lost(0, Fault::Corrupt(format!("it cannot be decompressed to its end: {error}")));
+                }
+                whole.rewind()?;
+                let read = match storage {
+                    Storage::Mcap => read_mcap(&mut BufReader::new(whole), file, counts, visit, lost),
+                    Storage::Sqlite => read_sqlite(whole.path(), false, file, counts, visit, lost),
+                };
+                match read {
+                    // What came out before the damage need not even begin like a bag.
+                    Err(Fault::Visit(BagError::NotMcap { .. } | BagError::Empty { .. })) if unpacked.is_err() => Ok(()),
+                    read => read,
+                }
+            }
+        }
+    }
+
+    /// Type of the messages of every topic that has messages, and what is lost, as [`BagReader::for_each`] says.
+    ///
+    /// # Errors
+    /// As [`BagReader::for_each`].
+    pub fn topics(&self) -> Result<(BTreeMap<String, String>, Vec<BagError>), BagError> {
+        let mut topics = BTreeMap::new();
+        let losses = self.for_each(&mut |message| {
+            if message.index() == 0 {
+                topics.insert(message.topic().to_owned(), message.message_type().to_owned());
+            }
+            Ok(())
+        })?;
+        Ok((topics, losses))
     }
 }
 
-/// Where a message was found.
-struct Place<'a> {
-    file: &'a Path,
-    topic: &'a str,
-    message: usize,
-}
-
-impl Place<'_> {
-    fn file(&self) -> String {
-        self.file.display().to_string()
-    }
-
-    fn decode<M: DeserializeOwned>(&self, data: &[u8]) -> Result<M, BagError> {
-        let (file, topic) = (self.file(), self.topic.to_owned());
-        decode(data).map_err(|reason| BagError::Cdr { file, topic, message: self.message, reason })
-    }
-
-    fn poses(&self, poses: &[msg::Pose]) -> Result<Vec<Pose>, BagError> {
-        let convert = |(index, pose): (usize, &msg::Pose)| {
-            pose.to_pose().map_err(|reason| BagError::InvalidPoseInMessage {
-                file: self.file(),
-                topic: self.topic.to_owned(),
-                message: self.message,
-                pose: index,
-                reason,
-            })
-        };
-        poses.iter().enumerate().map(convert).collect()
+fn named(file: &str, messages_read: u64, fault: Fault) -> BagError {
+    let file = file.to_owned();
+    match fault {
+        Fault::Cut => BagError::Truncated { file, messages_read },
+        Fault::Corrupt(reason) => BagError::Corrupt { file, messages_read, reason },
+        Fault::Io(source) => BagError::Io { file, source },
+        Fault::Visit(error) => error,
     }
 }

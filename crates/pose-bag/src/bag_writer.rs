@@ -23,6 +23,8 @@ pub enum Compression {
     /// By zstd.
     #[default]
     Zstd,
+    /// By lz4.
+    Lz4,
 }
 
 /// The quality of service a topic is recorded with; a player offers it again. Both are reliable.
@@ -113,6 +115,7 @@ impl BagWriter {
         let compression = match compression {
             Compression::None => None,
             Compression::Zstd => Some(mcap::Compression::Zstd),
+            Compression::Lz4 => Some(mcap::Compression::Lz4),
         };
         // No worker threads: bags of poses are small.
         let options = mcap::WriteOptions::new().profile("ros2").compression(compression).compression_threads(0);

@@ -18,7 +18,7 @@ pub enum BagError {
         source: std::io::Error,
     },
     /// Neither the extension nor the first bytes tell the format.
-    #[error("{file} is not a pose file: expected .csv, .tum, .txt, .mcap or the folder of a rosbag2 bag")]
+    #[error("{file} is not a pose file: expected .csv, .tum, .txt, .kitti, .mcap, .db3 or the folder of a rosbag2 bag")]
     UnknownFormat {
         /// The file.
         file: String,
@@ -127,6 +127,16 @@ pub enum BagError {
         /// Why it is none.
         reason: InvalidPose,
     },
+    /// Twelve numbers that are no pose.
+    #[error("{file}, line {line}: the 3 x 3 block is no rotation: it is {deviation:.6} away from one")]
+    NotARotation {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Greatest entry of R Rᵀ − I, or 2 for a reflection.
+        deviation: f64,
+    },
     /// A pose in a message is none.
     #[error("{file}, topic {topic}, message {message}, pose {pose} (counted from 0): {reason}")]
     InvalidPoseInMessage {
@@ -152,6 +162,30 @@ pub enum BagError {
         message: usize,
         /// What is wrong with the bytes.
         reason: CdrError,
+    },
+    /// The messages of a topic are of another type than the one asked for.
+    #[error("{file}, topic {topic}: the messages are {found}, not {expected}")]
+    WrongType {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// The type asked for.
+        expected: &'static str,
+        /// The type that is there.
+        found: String,
+    },
+    /// The bag's own definition of a type differs from the one that is read here.
+    #[error("{file}, topic {topic}: the bag's {message_type} is not the standard one: {difference}")]
+    OtherDefinition {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// The type.
+        message_type: String,
+        /// What differs, with the name of the field.
+        difference: String,
     },
     /// A channel is encoded in something else than CDR.
     #[error("{file}, topic {topic}: the messages are encoded as {encoding:?} instead of cdr")]
@@ -210,7 +244,7 @@ pub enum BagError {
         reason: String,
     },
     /// The bag is stored in a way that is not read here.
-    #[error("{file}: bags with {feature} are not supported; `ros2 bag convert` makes an uncompressed MCAP bag of it")]
+    #[error("{file}: bags with {feature} are not supported; `ros2 bag convert` makes an MCAP bag of it")]
     Unsupported {
         /// The file.
         file: String,
@@ -219,7 +253,8 @@ pub enum BagError {
     },
     /// No topic of the bag carries poses.
     #[error(
-        "{file} has no topic of type geometry_msgs/msg/PoseArray or geometry_msgs/msg/PoseStamped; its topics: {topics}"
+        "{file} has no topic with poses (PoseArray, PoseStamped, PoseWithCovarianceStamped, Odometry, Path, TFMessage); \
+         its topics: {topics}"
     )]
     NoPoseTopic {
         /// The bag.
@@ -244,6 +279,16 @@ pub enum BagError {
         topic: String,
         /// Topics and types that are there.
         topics: String,
+    },
+    /// Transforms between several pairs of frames were recorded, and none was chosen.
+    #[error("{file}, topic {topic}: name one of the frame pairs {pairs}")]
+    FramePair {
+        /// The bag.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// The pairs that are there, as `parent:child`.
+        pairs: String,
     },
     /// What should be written is already there.
     #[error("{file} already exists and is not overwritten")]
@@ -274,6 +319,11 @@ pub enum BagError {
 }
 
 impl BagError {
+    /// Whether it says what part of a bag is lost, the rest being readable.
+    pub fn is_loss(&self) -> bool {
+        matches!(self, Self::Truncated { .. } | Self::Corrupt { .. } | Self::Io { .. })
+    }
+
     pub(crate) fn io(file: impl Into<String>) -> impl FnOnce(std::io::Error) -> Self {
         let file = file.into();
         move |source| Self::Io { file, source }

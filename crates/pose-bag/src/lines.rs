@@ -9,6 +9,15 @@ const MAX_LINE_BYTES: usize = 1 << 20;
 
 /// Calls `visit` with number (from 1) and text of every line that is neither blank nor a `#` comment.
 pub(crate) fn for_each_line(
+    reader: impl BufRead,
+    file: &str,
+    mut visit: impl FnMut(usize, &str) -> Result<(), BagError>,
+) -> Result<(), BagError> {
+    for_each_line_and_comment(reader, file, |line, text| if text.starts_with('#') { Ok(()) } else { visit(line, text) })
+}
+
+/// As [`for_each_line`], comments too.
+pub(crate) fn for_each_line_and_comment(
     mut reader: impl BufRead,
     file: &str,
     mut visit: impl FnMut(usize, &str) -> Result<(), BagError>,
@@ -25,7 +34,7 @@ pub(crate) fn for_each_line(
         }
         let text = str::from_utf8(&bytes).map_err(|_| BagError::NotText { file: file.into(), line })?;
         let text = text.trim_start_matches('\u{feff}').trim();
-        if !text.is_empty() && !text.starts_with('#') {
+        if !text.is_empty() {
             visit(line, text)?;
         }
     }

@@ -1,112 +1,113 @@
 //! Messages of an MCAP file, linked to their topics.
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{BufReader, Read};
-use std::path::Path;
+use std::io::Read;
 
 use mcap::records::op;
 
 use crate::BagError;
-use crate::mcap_records::{Fault, read_file};
+use crate::channel::{BagMessage, Channel, Counts, Schema, Visit};
+use crate::mcap_records::{Fault, Records, read_file};
 
-/// Where messages come from.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Channel {
-    pub(crate) topic: String,
-    /// Name of the schema, empty for a channel without one.
-    pub(crate) message_type: String,
-    pub(crate) encoding: String,
-}
-
-/// One recorded message.
-pub(crate) struct RawMessage<'a> {
-    pub(crate) channel: &'a Channel,
-    pub(crate) log_time_ns: u64,
-    pub(crate) data: &'a [u8],
-}
-
-/// Whether a file begins like MCAP, or `None` where it is too short to tell.
+/// Whether a file begins like MCAP.
 pub(crate) fn has_magic(start: &[u8]) -> bool {
     start.starts_with(mcap::MAGIC)
 }
 
-/// Calls `visit` with every message, in file order.
-pub(crate) fn for_each_message(
-    path: &Path,
-    visit: &mut dyn FnMut(RawMessage<'_>) -> Result<(), BagError>,
-) -> Result<(), BagError> {
-    let file = path.display().to_string();
-    let mut source = BufReader::with_capacity(1 << 16, File::open(path).map_err(BagError::io(&file))?);
+/// Hands on every message, in file order. `lost` is told how many messages came before what is lost, and why it is.
+pub(crate) fn read_mcap(
+    source: &mut impl Read,
+    file: &str,
+    counts: &mut Counts,
+    visit: &mut Visit<'_>,
+    lost: &mut dyn FnMut(u64, Fault),
+) -> Result<(), Fault> {
+    let mut linker =
+        Linker { file, counts, visit, lost, schemas: HashMap::new(), channels: HashMap::new(), messages_read: 0 };
     let mut start = Vec::new();
-    source.by_ref().take(mcap::MAGIC.len() as u64).read_to_end(&mut start).map_err(BagError::io(&file))?;
+    source.by_ref().take(mcap::MAGIC.len() as u64).read_to_end(&mut start)?;
     if start.is_empty() {
-        return Err(BagError::Empty { file });
+        return Err(Fault::Visit(BagError::Empty { file: file.into() }));
     }
     if !mcap::MAGIC.starts_with(&start) {
-        return Err(BagError::NotMcap { file });
+        return Err(Fault::Visit(BagError::NotMcap { file: file.into() }));
     }
-    let mut linker = Linker::default();
-    let read = if start.len() < mcap::MAGIC.len() {
-        Err(Fault::Cut)
-    } else {
-        read_file(&mut source, &mut |opcode, body| linker.record(opcode, body, visit))
-    };
-    let messages_read = linker.messages_read;
-    read.map_err(|fault| match fault {
-        Fault::Cut => BagError::Truncated { file, messages_read },
-        Fault::Corrupt(reason) => BagError::Corrupt { file, messages_read, reason },
-        Fault::Io(source) => BagError::Io { file, source },
-        Fault::Visit(error) => error,
-    })
+    let read = if start.len() < mcap::MAGIC.len() { Err(Fault::Cut) } else { read_file(source, &mut linker) };
+    match read {
+        Err(fault @ (Fault::Cut | Fault::Corrupt(_))) => {
+            (linker.lost)(linker.messages_read, fault);
+            Ok(())
+        }
+        read => read,
+    }
 }
 
-#[derive(Default)]
-struct Linker {
-    schemas: HashMap<u16, String>,
+struct Linker<'a, 'v> {
+    file: &'a str,
+    counts: &'a mut Counts,
+    visit: &'a mut Visit<'v>,
+    lost: &'a mut dyn FnMut(u64, Fault),
+    schemas: HashMap<u16, Schema>,
     channels: HashMap<u16, Channel>,
     messages_read: u64,
 }
 
-impl Linker {
-    fn record(
-        &mut self,
-        opcode: u8,
-        body: &[u8],
-        visit: &mut dyn FnMut(RawMessage<'_>) -> Result<(), BagError>,
-    ) -> Result<(), Fault<BagError>> {
-        let corrupt = |reason: &str| Fault::Corrupt(reason.to_owned());
+impl Records for Linker<'_, '_> {
+    fn record(&mut self, opcode: u8, body: &[u8]) -> Result<(), Fault> {
         let mut fields = Fields(body);
-        match opcode {
-            op::SCHEMA => {
-                let (id, name) = fields.schema().ok_or_else(|| corrupt("a schema record is too short"))?;
-                self.schemas.insert(id, name);
-            }
+        let read = match opcode {
+            op::SCHEMA => fields.schema().map(|(id, schema)| {
+                self.schemas.insert(id, schema?);
+                Ok(())
+            }),
             op::CHANNEL => {
-                let (id, schema_id, topic, encoding) =
-                    fields.channel().ok_or_else(|| corrupt("a channel record is too short"))?;
-                let message_type = match (schema_id, self.schemas.get(&schema_id)) {
-                    (0, _) => String::new(),
-                    (_, Some(name)) => name.clone(),
-                    (_, None) => {
-                        return Err(Fault::Corrupt(format!("topic {topic} has the unknown schema {schema_id}")));
-                    }
-                };
-                let channel = Channel { topic, message_type, encoding };
-                if self.channels.get(&id).is_some_and(|known| *known != channel) {
-                    return Err(Fault::Corrupt(format!("channel {id} is defined twice, as different topics")));
-                }
+                fields.channel().map(|(id, schema, topic, encoding)| self.add_channel(id, schema, topic, encoding))
+            }
+            _ => fields.message().map(|(id, log_time_ns)| self.message(id, log_time_ns, fields.0)),
+        };
+        read.unwrap_or_else(|| {
+            let kind = match opcode {
+                op::SCHEMA => "schema",
+                op::CHANNEL => "channel",
+                _ => "message",
+            };
+            Err(Fault::Corrupt(format!("a {kind} record is too short")))
+        })
+    }
+
+    fn lost(&mut self, why: String) {
+        (self.lost)(self.messages_read, Fault::Corrupt(why));
+    }
+}
+
+impl Linker<'_, '_> {
+    fn add_channel(&mut self, id: u16, schema_id: u16, topic: String, encoding: String) -> Result<(), Fault> {
+        let none = Schema::default();
+        let Some(schema) = self.schemas.get(&schema_id).or(Some(&none).filter(|_| schema_id == 0)) else {
+            return Err(Fault::Corrupt(format!("a topic has the unknown schema {schema_id}")));
+        };
+        let channel = self.counts.channel(topic, encoding, schema)?;
+        let is_same = |known: &Channel| {
+            known.topic == channel.topic
+                && known.encoding == channel.encoding
+                && known.message_type == channel.message_type
+        };
+        match self.channels.get(&id) {
+            Some(known) if is_same(known) => {}
+            Some(_) => return Err(Fault::Corrupt(format!("channel {id} is defined twice, as different topics"))),
+            None => {
                 self.channels.insert(id, channel);
             }
-            _ => {
-                let (id, log_time_ns) = fields.message().ok_or_else(|| corrupt("a message record is too short"))?;
-                let Some(channel) = self.channels.get(&id) else {
-                    return Err(Fault::Corrupt(format!("a message belongs to the unknown channel {id}")));
-                };
-                visit(RawMessage { channel, log_time_ns, data: fields.0 }).map_err(Fault::Visit)?;
-                self.messages_read += 1;
-            }
         }
+        Ok(())
+    }
+
+    fn message(&mut self, id: u16, log_time_ns: u64, data: &[u8]) -> Result<(), Fault> {
+        let Some(channel) = self.channels.get(&id) else {
+            return Err(Fault::Corrupt(format!("a message belongs to the unknown channel {id}")));
+        };
+        BagMessage { file: self.file, channel, log_time_ns, data }.hand_to(self.visit)?;
+        self.messages_read += 1;
         Ok(())
     }
 }
@@ -114,7 +115,7 @@ impl Linker {
 /// The little-endian fields of a record, taken from its front; `None` where the bytes do not suffice.
 struct Fields<'a>(&'a [u8]);
 
-impl Fields<'_> {
+impl<'a> Fields<'a> {
     fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (head, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
@@ -125,16 +126,22 @@ impl Fields<'_> {
         self.array().map(u16::from_le_bytes)
     }
 
-    fn string(&mut self) -> Option<String> {
+    fn bytes(&mut self) -> Option<&'a [u8]> {
         let len = u32::from_le_bytes(self.array()?);
         let (head, rest) = self.0.split_at_checked(len.try_into().ok()?)?;
         self.0 = rest;
-        Some(String::from_utf8_lossy(head).into_owned())
+        Some(head)
     }
 
-    /// Identifier and name.
-    fn schema(&mut self) -> Option<(u16, String)> {
-        Some((self.u16()?, self.string()?))
+    fn string(&mut self) -> Option<String> {
+        self.bytes().map(|bytes| String::from_utf8_lossy(bytes).into_owned())
+    }
+
+    /// Identifier, and the schema.
+    fn schema(&mut self) -> Option<(u16, Result<Schema, Fault>)> {
+        let id = self.u16()?;
+        let (message_type, language, text) = (self.string()?, self.string()?, self.bytes()?);
+        Some((id, Schema::new(message_type, &language, &String::from_utf8_lossy(text))))
     }
 
     /// Identifier, identifier of the schema, topic, encoding.

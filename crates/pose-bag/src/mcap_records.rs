@@ -2,48 +2,60 @@
 //!
 //! The readers of crate `mcap` trust the lengths they find. In 0.26.0 a message that claims more than its chunk holds, a record
 //! of 2⁶⁴ − 1 bytes and a short attachment panic, and a cut record of 4 GB allocates 4 GB. So records are framed here, over a
-//! stream, where memory follows the bytes that are there, and chunks are decompressed on the fly: a cut file still yields every
-//! message before the cut.
+//! stream, where memory follows the bytes that are there. One chunk at a time is decompressed, and looked into only once its
+//! checksum is known to be right; a cut one yields every message before the cut.
 
 use std::io::{self, ErrorKind, Read};
 
 use mcap::records::op;
 
-/// Larger than any message of poses (4 million of them), small enough to be held.
-const MAX_RECORD_BYTES: u64 = 256 << 20;
+use crate::BagError;
+use crate::bounded::{Budget, MAX_MESSAGE_BYTES};
 
-/// Why reading ended before the end.
-pub(crate) enum Fault<E> {
+/// Writers keep chunks to a few megabytes.
+const MAX_CHUNK_BYTES: u64 = 128 << 20;
+
+/// Why reading a file ended before its end.
+pub(crate) enum Fault {
     /// The file ends inside a record.
     Cut,
     /// The records contradict each other.
     Corrupt(String),
     /// The operating system refused.
     Io(io::Error),
-    /// The visitor refused.
-    Visit(E),
+    /// Whoever looks at the messages refused.
+    Visit(BagError),
 }
 
-impl<E> From<io::Error> for Fault<E> {
+impl From<io::Error> for Fault {
     fn from(error: io::Error) -> Self {
         if error.kind() == ErrorKind::UnexpectedEof { Self::Cut } else { Self::Io(error) }
     }
 }
 
-/// Receives the bodies of schema, channel and message records, with their opcode, in file order.
-pub(crate) type Visit<'a, E> = dyn FnMut(u8, &[u8]) -> Result<(), Fault<E>> + 'a;
+/// Who is told of the records of a file.
+pub(crate) trait Records {
+    /// A schema, channel or message record, in file order.
+    fn record(&mut self, opcode: u8, body: &[u8]) -> Result<(), Fault>;
+    /// A chunk is lost, wholly or from somewhere on; the file goes on behind it.
+    fn lost(&mut self, why: String);
+}
 
 /// Reads a file from behind its first magic to its end.
-pub(crate) fn read_file<E>(source: &mut impl Read, visit: &mut Visit<'_, E>) -> Result<(), Fault<E>> {
+pub(crate) fn read_file(source: &mut impl Read, records: &mut impl Records) -> Result<(), Fault> {
     let mut in_data = true;
-    let mut body = Vec::new();
+    let (mut body, mut chunk, mut budget) = (Vec::new(), Vec::new(), Budget::default());
     while let Some((opcode, len)) = record_head(source)? {
         match opcode {
-            op::CHUNK if in_data => read_chunk(&mut source.by_ref().take(len), visit)?,
+            op::CHUNK if in_data => {
+                if let Err(why) = read_chunk(&mut source.by_ref().take(len), &mut chunk, &mut budget, records)? {
+                    records.lost(why);
+                }
+            }
             // The summary repeats schemas and channels of the data section.
             op::SCHEMA | op::CHANNEL | op::MESSAGE if in_data => {
                 read_body(source, len, &mut body)?;
-                visit(opcode, &body)?;
+                records.record(opcode, &body)?;
             }
             op::FOOTER => {
                 skip(source, len)?;
@@ -58,10 +70,8 @@ pub(crate) fn read_file<E>(source: &mut impl Read, visit: &mut Visit<'_, E>) -> 
     Err(Fault::Cut)
 }
 
-fn read_end<E>(source: &mut dyn Read) -> Result<(), Fault<E>> {
-    let mut magic = [0; mcap::MAGIC.len()];
-    source.read_exact(&mut magic)?;
-    if magic != mcap::MAGIC {
+fn read_end(source: &mut impl Read) -> Result<(), Fault> {
+    if read_array::<{ mcap::MAGIC.len() }>(source)? != mcap::MAGIC {
         return Err(Fault::Corrupt("the footer is not followed by the MCAP magic".into()));
     }
     match source.read(&mut [0])? {
@@ -70,105 +80,127 @@ fn read_end<E>(source: &mut dyn Read) -> Result<(), Fault<E>> {
     }
 }
 
-fn read_chunk<E>(chunk: &mut io::Take<impl Read>, visit: &mut Visit<'_, E>) -> Result<(), Fault<E>> {
-    let mut times_and_size = [0; 24];
-    chunk.read_exact(&mut times_and_size)?;
+/// The inner error is why the chunk is lost while the file goes on.
+fn read_chunk(
+    chunk: &mut io::Take<impl Read>,
+    inside: &mut Vec<u8>,
+    budget: &mut Budget,
+    records: &mut impl Records,
+) -> Result<Result<(), String>, Fault> {
+    let unpacked = unpack_chunk(chunk, inside, budget);
+    // A stream that ends early is the file's end if the file ends there, and a damaged chunk if it goes on.
+    let unread = chunk.limit();
+    let cut = skip(chunk, unread).err();
+    let read = match unpacked {
+        Ok(Ok(())) => chunk_records(inside, records),
+        Ok(Err(why)) if cut.is_none() => Ok(Err(why)),
+        Err(Fault::Cut) if cut.is_none() => Ok(Err("a chunk is shorter than its own header".into())),
+        // Its checksum cannot be known; what is whole in it is.
+        Ok(Err(_)) | Err(Fault::Cut) => chunk_records(inside, records),
+        Err(fault) => return Err(fault),
+    };
+    match (read, cut) {
+        (Err(fault), _) | (Ok(_), Some(fault)) => Err(fault),
+        (Ok(read), None) => Ok(read),
+    }
+}
+
+/// Decompresses the records of a chunk and checks them against its header.
+fn unpack_chunk(
+    chunk: &mut io::Take<impl Read>,
+    inside: &mut Vec<u8>,
+    budget: &mut Budget,
+) -> Result<Result<(), String>, Fault> {
+    inside.clear();
+    let _times = read_array::<16>(chunk)?;
+    let claimed = u64::from_le_bytes(read_array(chunk)?);
     let saved_crc = u32::from_le_bytes(read_array(chunk)?);
+    let name_len = u32::from_le_bytes(read_array(chunk)?);
     let mut compression = Vec::new();
-    let len = u32::from_le_bytes(read_array(chunk)?);
-    chunk.by_ref().take(len.into()).read_to_end(&mut compression)?;
+    chunk.by_ref().take(name_len.into()).take(32).read_to_end(&mut compression)?;
+    if compression.len() as u64 != name_len.into() {
+        return Ok(Err(format!("the compression of a chunk has a name of {name_len} bytes")));
+    }
     let size = u64::from_le_bytes(read_array(chunk)?);
     let present = chunk.limit();
     if size > present {
-        return Err(Fault::Corrupt(format!("a chunk claims {size} compressed bytes in a record with {present} left")));
+        return Ok(Err(format!("a chunk claims {size} compressed bytes in a record with {present} left")));
     }
-    let mut compressed = chunk.by_ref().take(size);
-    let read = match compression.as_slice() {
-        b"" => read_chunk_records(&mut compressed, saved_crc, visit),
-        b"zstd" => {
-            let mut decoder = zstd::stream::read::Decoder::new(&mut compressed)?;
-            read_chunk_records(&mut decoder, saved_crc, visit)
-        }
-        b"lz4" => {
-            let mut decoder = lz4::Decoder::new(&mut compressed)?;
-            read_chunk_records(&mut decoder, saved_crc, visit)
-        }
+    if claimed > MAX_CHUNK_BYTES || !budget.allows(size, claimed) {
+        return Ok(Err(format!("a chunk of {size} bytes claims to hold {claimed}, which is not believed")));
+    }
+    let compressed = chunk.by_ref().take(size);
+    let unpacked = match compression.as_slice() {
+        b"" => fill(compressed, claimed, inside),
+        b"zstd" => zstd::stream::read::Decoder::new(compressed).and_then(|decoder| fill(decoder, claimed, inside)),
+        b"lz4" => lz4::Decoder::new(compressed).and_then(|decoder| fill(decoder, claimed, inside)),
         other => {
-            let name = String::from_utf8_lossy(other).chars().take(20).collect::<String>();
-            Err(Fault::Corrupt(format!("a chunk is compressed by the unknown method {name:?}")))
+            let name = String::from_utf8_lossy(other);
+            return Ok(Err(format!("a chunk is compressed by the unknown method {name:?}")));
         }
     };
-    // A stream that ends early is the file's end if the file ends there, and a damaged chunk if it goes on.
-    let unread = chunk.limit();
-    match (read, skip(chunk, unread)) {
-        (Err(Fault::Visit(error)), _) => Err(Fault::Visit(error)),
-        (_, Err(end_of_file)) => Err(end_of_file),
-        (Err(Fault::Cut), Ok(())) => Err(Fault::Corrupt("a record goes beyond the end of its chunk".into())),
-        (Err(Fault::Io(error)), Ok(())) => Err(Fault::Corrupt(format!("a chunk cannot be decompressed: {error}"))),
-        (read, Ok(())) => read,
+    if let Err(error) = unpacked {
+        return Ok(Err(format!("a chunk cannot be decompressed: {error}")));
     }
-}
-
-fn read_chunk_records<E>(records: &mut dyn Read, saved_crc: u32, visit: &mut Visit<'_, E>) -> Result<(), Fault<E>> {
-    let mut records = Hashing { source: records, hasher: crc32fast::Hasher::new() };
-    let mut body = Vec::new();
-    while let Some((opcode, len)) = record_head(&mut records)? {
-        if matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
-            read_body(&mut records, len, &mut body)?;
-            visit(opcode, &body)?;
-        } else {
-            skip(&mut records, len)?;
-        }
+    if inside.len() as u64 != claimed {
+        let more = if inside.len() as u64 > claimed { "more than" } else { "less than" };
+        return Ok(Err(format!("a chunk holds {more} the {claimed} bytes that it claims")));
     }
     // Zero means that the writer computed none.
-    if saved_crc != 0 && records.hasher.finalize() != saved_crc {
-        return Err(Fault::Corrupt("the checksum of a chunk does not match its bytes".into()));
+    if saved_crc != 0 && crc32fast::hash(inside) != saved_crc {
+        return Ok(Err("the checksum of a chunk does not match its bytes".into()));
     }
-    Ok(())
+    Ok(Ok(()))
+}
+
+/// Up to one byte more than the claimed ones, so that more of them show.
+fn fill(source: impl Read, claimed: u64, inside: &mut Vec<u8>) -> io::Result<()> {
+    source.take(claimed + 1).read_to_end(inside).map(|_| ())
+}
+
+fn chunk_records(inside: &[u8], records: &mut impl Records) -> Result<Result<(), String>, Fault> {
+    let mut rest = inside;
+    while let Some((head, after)) = rest.split_first_chunk::<9>() {
+        let len = u64::from_le_bytes(std::array::from_fn(|i| head[i + 1]));
+        let Some((body, after)) = usize::try_from(len).ok().and_then(|len| after.split_at_checked(len)) else { break };
+        if matches!(head[0], op::SCHEMA | op::CHANNEL | op::MESSAGE) {
+            match records.record(head[0], body) {
+                Err(Fault::Corrupt(why)) => return Ok(Err(why)),
+                other => other?,
+            }
+        }
+        rest = after;
+    }
+    Ok(if rest.is_empty() { Ok(()) } else { Err("a record goes beyond the end of its chunk".into()) })
 }
 
 /// Opcode and length of the next record; `None` where the stream ends before it.
-fn record_head<E>(source: &mut dyn Read) -> Result<Option<(u8, u64)>, Fault<E>> {
-    let mut opcode = [0];
-    match source.read_exact(&mut opcode) {
-        Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(None),
-        read => read?,
+fn record_head(source: &mut impl Read) -> Result<Option<(u8, u64)>, Fault> {
+    match read_array(source) {
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(None),
+        Err(error) => Err(error.into()),
+        Ok([opcode]) => Ok(Some((opcode, u64::from_le_bytes(read_array(source)?)))),
     }
-    Ok(Some((opcode[0], u64::from_le_bytes(read_array(source)?))))
 }
 
-fn read_body<E>(source: &mut dyn Read, len: u64, body: &mut Vec<u8>) -> Result<(), Fault<E>> {
-    if len > MAX_RECORD_BYTES {
+fn read_body(source: &mut impl Read, len: u64, body: &mut Vec<u8>) -> Result<(), Fault> {
+    if len > MAX_MESSAGE_BYTES {
         return Err(Fault::Corrupt(format!(
-            "a record claims {len} bytes, more than the {MAX_RECORD_BYTES} that are read"
+            "a record claims {len} bytes, more than the {MAX_MESSAGE_BYTES} that are read"
         )));
     }
     body.clear();
-    let read = source.take(len).read_to_end(body)?;
+    let read = source.by_ref().take(len).read_to_end(body)?;
     if (read as u64) < len { Err(Fault::Cut) } else { Ok(()) }
 }
 
-fn skip<E>(source: &mut dyn Read, len: u64) -> Result<(), Fault<E>> {
-    let skipped = io::copy(&mut source.take(len), &mut io::sink())?;
+fn skip(source: &mut impl Read, len: u64) -> Result<(), Fault> {
+    let skipped = io::copy(&mut source.by_ref().take(len), &mut io::sink())?;
     if skipped < len { Err(Fault::Cut) } else { Ok(()) }
 }
 
-fn read_array<const N: usize>(source: &mut dyn Read) -> io::Result<[u8; N]> {
+fn read_array<const N: usize>(source: &mut impl Read) -> io::Result<[u8; N]> {
     let mut bytes = [0; N];
     source.read_exact(&mut bytes)?;
     Ok(bytes)
-}
-
-/// Passes bytes on and computes their CRC-32.
-struct Hashing<'a> {
-    source: &'a mut dyn Read,
-    hasher: crc32fast::Hasher,
-}
-
-impl Read for Hashing<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let read = self.source.read(buffer)?;
-        self.hasher.update(&buffer[..read]);
-        Ok(read)
-    }
 }

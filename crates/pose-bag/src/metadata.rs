@@ -1,6 +1,7 @@
 //! `metadata.yaml` of a rosbag2 bag, version 9 (ROS 2 Jazzy).
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -9,7 +10,7 @@ use crate::BagError;
 
 /// Name of the file inside the folder of a bag.
 pub(crate) const METADATA_FILE: &str = "metadata.yaml";
-const STORAGE: &str = "mcap";
+const MCAP: &str = "mcap";
 
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Document {
@@ -125,7 +126,7 @@ impl Metadata {
         let message_count = topics.iter().map(|topic| topic.message_count).sum();
         Self {
             version: 9,
-            storage_identifier: STORAGE.into(),
+            storage_identifier: MCAP.into(),
             duration,
             starting_time,
             message_count,
@@ -140,22 +141,59 @@ impl Metadata {
     }
 }
 
-/// The MCAP files of the bag in a folder, in the order of its metadata.
-pub(crate) fn mcap_files(folder: &Path) -> Result<Vec<PathBuf>, BagError> {
+/// The files of a bag and how they are stored.
+pub(crate) struct Stored {
+    pub(crate) files: Vec<PathBuf>,
+    pub(crate) storage: Storage,
+    pub(crate) packed: Packed,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Storage {
+    Mcap,
+    Sqlite,
+}
+
+/// What zstd was applied to, beside what MCAP does by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Packed {
+    Nothing,
+    Messages,
+    Files,
+}
+
+/// A longer file is no metadata.
+const MAX_BYTES: u64 = 4 << 20;
+
+/// What `metadata.yaml` in the folder of a bag says of its files, in its order.
+pub(crate) fn stored_in(folder: &Path) -> Result<Stored, BagError> {
     let path = folder.join(METADATA_FILE);
     let file = folder.display().to_string();
     let invalid =
         |reason: String| BagError::NotABag { file: file.clone(), reason: format!("{METADATA_FILE}: {reason}") };
     let unsupported = |feature: String| BagError::Unsupported { file: file.clone(), feature };
-    let text = fs::read_to_string(&path).map_err(|error| invalid(error.to_string()))?;
+    let mut text = String::new();
+    let read = fs::File::open(&path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_string(&mut text));
+    read.map_err(|error| invalid(error.to_string()))?;
+    if text.len() as u64 > MAX_BYTES {
+        return Err(invalid(format!("it has more than {MAX_BYTES} bytes")));
+    }
     let document: Document = serde_yaml::from_str(&text).map_err(|error| invalid(error.to_string()))?;
     let metadata = document.rosbag2_bagfile_information;
-    if metadata.storage_identifier != STORAGE {
-        return Err(unsupported(format!("storage {}", metadata.storage_identifier)));
-    }
+    let storage = match metadata.storage_identifier.as_str() {
+        MCAP => Storage::Mcap,
+        "sqlite3" => Storage::Sqlite,
+        other => return Err(unsupported(format!("storage {other}"))),
+    };
     // Chunks compressed by the MCAP storage itself are not meant here: they leave the mode empty.
-    if !matches!(metadata.compression_mode.to_ascii_lowercase().as_str(), "" | "none" | "storage") {
-        return Err(unsupported(format!("compression mode {}", metadata.compression_mode)));
+    let packed = match metadata.compression_mode.to_ascii_lowercase().as_str() {
+        "" | "none" | "storage" => Packed::Nothing,
+        "message" => Packed::Messages,
+        "file" => Packed::Files,
+        _ => return Err(unsupported(format!("compression mode {}", metadata.compression_mode))),
+    };
+    if packed != Packed::Nothing && metadata.compression_format != "zstd" {
+        return Err(unsupported(format!("compression by {}", metadata.compression_format)));
     }
     if metadata.relative_file_paths.is_empty() {
         return Err(invalid("relative_file_paths is empty".into()));
@@ -163,5 +201,6 @@ pub(crate) fn mcap_files(folder: &Path) -> Result<Vec<PathBuf>, BagError> {
     // Bags before version 4 prefix the name of the folder, and a bag may have been renamed since.
     let file_name = |relative: &String| Path::new(relative).file_name().map(|name| folder.join(name));
     let files = metadata.relative_file_paths.iter().map(file_name).collect::<Option<Vec<_>>>();
-    files.ok_or_else(|| invalid("relative_file_paths names no file".into()))
+    let files = files.ok_or_else(|| invalid("relative_file_paths names no file".into()))?;
+    Ok(Stored { files, storage, packed })
 }

@@ -3,6 +3,15 @@
 use se3_geom::{InvalidPose, Pose as SpatialPose, pose_from_xyzw, xyzw_from_rotation};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
+mod markers;
+mod states;
+
+pub use markers::{ColorRgba, CompressedImage, Marker, MarkerArray, MeshFile, UvCoordinate};
+pub use states::{
+    JointState, Odometry, PoseWithCovariance, PoseWithCovarianceStamped, TfMessage, Transform, TransformStamped, Twist,
+    TwistWithCovariance, Vector3,
+};
+
 /// A message type that a bag can hold: its CDR form is the one `serde` derives from the order of the fields.
 pub trait Message: Serialize + DeserializeOwned {
     /// Full name, such as `geometry_msgs/msg/Pose`.
@@ -133,6 +142,13 @@ pub struct Path {
     pub poses: Vec<PoseStamped>,
 }
 
+/// `std_msgs/msg/String`.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Text {
+    /// The text.
+    pub data: String,
+}
+
 /// `trajectory_msgs/msg/JointTrajectoryPoint`, in rad (m for prismatic joints) and seconds; a field that is not given is empty.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs)]
@@ -155,23 +171,41 @@ pub struct JointTrajectory {
     pub points: Vec<JointTrajectoryPoint>,
 }
 
+/// The definition of a type that is read here.
+pub(crate) fn definition(message_type: &str) -> Option<&'static str> {
+    const KNOWN: [(&str, &str); 10] = [
+        (PoseArray::TYPE, PoseArray::DEFINITION),
+        (PoseStamped::TYPE, PoseStamped::DEFINITION),
+        (PoseWithCovarianceStamped::TYPE, PoseWithCovarianceStamped::DEFINITION),
+        (Odometry::TYPE, Odometry::DEFINITION),
+        (Path::TYPE, Path::DEFINITION),
+        (TfMessage::TYPE, TfMessage::DEFINITION),
+        (JointState::TYPE, JointState::DEFINITION),
+        (JointTrajectory::TYPE, JointTrajectory::DEFINITION),
+        (MarkerArray::TYPE, MarkerArray::DEFINITION),
+        (Text::TYPE, Text::DEFINITION),
+    ];
+    KNOWN.iter().find(|(name, _)| *name == message_type).map(|(_, definition)| *definition)
+}
+
 /// Concatenates `.msg` files the way MCAP wants `ros2msg` schemas: the root, then every part behind a ruler and its name.
-macro_rules! definition {
+macro_rules! definition_text {
     ($root:literal $(, $package:literal / $part:literal)*) => {
         concat!(
-            include_str!(concat!("../msg/", $root, ".msg")),
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/msg/", $root, ".msg")),
             $(
                 "================================================================================\n",
                 "MSG: ", $package, "/", $part, "\n",
-                include_str!(concat!("../msg/", $part, ".msg")),
+                include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/msg/", $part, ".msg")),
             )*
         )
     };
 }
+use definition_text;
 
 impl Message for PoseArray {
     const TYPE: &'static str = "geometry_msgs/msg/PoseArray";
-    const DEFINITION: &'static str = definition!(
+    const DEFINITION: &'static str = definition_text!(
         "PoseArray",
         "std_msgs" / "Header",
         "builtin_interfaces" / "Time",
@@ -184,7 +218,7 @@ impl Message for PoseArray {
 
 impl Message for PoseStamped {
     const TYPE: &'static str = "geometry_msgs/msg/PoseStamped";
-    const DEFINITION: &'static str = definition!(
+    const DEFINITION: &'static str = definition_text!(
         "PoseStamped",
         "std_msgs" / "Header",
         "builtin_interfaces" / "Time",
@@ -197,7 +231,7 @@ impl Message for PoseStamped {
 
 impl Message for Path {
     const TYPE: &'static str = "nav_msgs/msg/Path";
-    const DEFINITION: &'static str = definition!(
+    const DEFINITION: &'static str = definition_text!(
         "Path",
         "std_msgs" / "Header",
         "builtin_interfaces" / "Time",
@@ -211,7 +245,7 @@ impl Message for Path {
 
 impl Message for JointTrajectory {
     const TYPE: &'static str = "trajectory_msgs/msg/JointTrajectory";
-    const DEFINITION: &'static str = definition!(
+    const DEFINITION: &'static str = definition_text!(
         "JointTrajectory",
         "std_msgs" / "Header",
         "builtin_interfaces" / "Time",
@@ -219,4 +253,10 @@ impl Message for JointTrajectory {
         "builtin_interfaces" / "Duration"
     );
     const TYPE_HASH: &'static str = "RIHS01_179b33eba59d676f6d967ac71fe35e7ca2f64b2f3928f4a018cec115e213796e";
+}
+
+impl Message for Text {
+    const TYPE: &'static str = "std_msgs/msg/String";
+    const DEFINITION: &'static str = definition_text!("String");
+    const TYPE_HASH: &'static str = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18";
 }

@@ -1,7 +1,7 @@
 //! Output that appears whole or not at all.
 
-use std::fs;
-use std::io::{BufWriter, Write};
+use std::fs::{self, File};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
@@ -14,6 +14,46 @@ pub(crate) struct Pending {
     folder: TempDir,
     inside: PathBuf,
     destination: PathBuf,
+    /// Of the folder: held as long as someone writes here.
+    _lock: File,
+}
+
+const PREFIX: &str = ".pose-bag-";
+
+/// A new folder, locked. One that is removed as abandoned before it is locked is made again.
+fn locked_folder(parent: &Path) -> std::io::Result<(TempDir, File)> {
+    loop {
+        let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(parent)?;
+        let lock = match File::open(folder.path()) {
+            Err(error) if error.kind() == ErrorKind::NotFound => continue,
+            opened => opened?,
+        };
+        // Where the file system knows no locks, nothing is ever removed as abandoned either.
+        if lock.lock().is_err() || folder.path().exists() {
+            return Ok((folder, lock));
+        }
+    }
+}
+
+/// Removes what processes that were killed left of their output in a folder.
+///
+/// # Errors
+/// Where the folder cannot be read, or what was left not be removed.
+pub fn remove_abandoned(folder: impl AsRef<Path>) -> Result<(), BagError> {
+    let label = folder.as_ref().display().to_string();
+    let remove = || {
+        for entry in fs::read_dir(folder.as_ref())? {
+            let path = entry?.path();
+            let is_ours = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(PREFIX.as_bytes()));
+            let opened = if is_ours { File::open(&path).ok() } else { None };
+            // The lock is kept until it is gone.
+            if let Some(_lock) = opened.filter(|lock| lock.try_lock().is_ok()) {
+                fs::remove_dir_all(path)?;
+            }
+        }
+        Ok(())
+    };
+    remove().map_err(BagError::io(label))
 }
 
 impl Pending {
@@ -26,11 +66,10 @@ impl Pending {
             file: destination.display().to_string(),
             reason: "the path ends in no name".into(),
         })?;
-        let folder = tempfile::Builder::new()
-            .prefix(".pose-bag-")
-            .tempdir_in(parent)
-            .map_err(BagError::io(destination.display().to_string()))?;
-        Ok(Self { inside: folder.path().join(name), folder, destination: destination.to_path_buf() })
+        let label = || destination.display().to_string();
+        let (folder, lock) = locked_folder(parent).map_err(BagError::io(label()))?;
+        let inside = folder.path().join(name);
+        Ok(Self { inside, folder, destination: destination.to_path_buf(), _lock: lock })
     }
 
     /// Where to write for now; has the name of the destination.
@@ -43,9 +82,21 @@ impl Pending {
         self.destination.display().to_string()
     }
 
+    /// Puts it in its place once it is on the disk: neither a process that is killed nor a power cut leaves half of it there.
     pub(crate) fn commit(self) -> Result<(), BagError> {
-        fs::rename(&self.inside, &self.destination).map_err(BagError::io(self.label()))?;
         let label = self.label();
+        let put = || {
+            if self.inside.is_dir() {
+                for entry in fs::read_dir(&self.inside)? {
+                    File::open(entry?.path())?.sync_all()?;
+                }
+            }
+            File::open(&self.inside)?.sync_all()?;
+            fs::rename(&self.inside, &self.destination)?;
+            let parent = self.folder.path().parent().unwrap_or(Path::new("."));
+            File::open(parent)?.sync_all()
+        };
+        put().map_err(BagError::io(&label))?;
         self.folder.close().map_err(BagError::io(label))
     }
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use se3_geom::{Pose, pose_from_xyzw, xyzw_from_rotation};
 
 use crate::BagError;
-use crate::lines::{finite, for_each_line};
+use crate::lines::{finite, for_each_line_and_comment};
 use crate::pending::write_text;
 
 /// The columns of a pose: metres, and a unit quaternion in the order x, y, z, w.
@@ -24,6 +24,7 @@ pub struct Table {
     /// The rows' text, one after the other: a million rows are one allocation.
     text: String,
     rows: Vec<Row>,
+    is_euroc: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +36,8 @@ struct Row {
 
 /// Reads a CSV file, or standard input where the path is `-`.
 ///
-/// Blank lines and lines that begin with `#` are skipped.
+/// Blank lines and lines that begin with `#` are skipped, but for the header of a EuRoC track (`#timestamp [ns],p_RS_R_x [m],…`), whose
+/// columns then have the names used here.
 ///
 /// # Errors
 /// Where the file cannot be read, is empty, has no header, or a line has another number of fields than the header.
@@ -57,11 +59,18 @@ impl Table {
     pub fn from_reader(reader: impl BufRead, file: &str) -> Result<Self, BagError> {
         let mut columns: Option<Vec<String>> = None;
         let (mut rows, mut all) = (Vec::new(), String::new());
-        for_each_line(reader, file, |line, text| match &columns {
+        let mut is_euroc = false;
+        for_each_line_and_comment(reader, file, |line, text| match &columns {
+            None if text.starts_with('#') => {
+                columns = euroc_columns(text);
+                is_euroc = columns.is_some();
+                Ok(())
+            }
             None => {
                 columns = Some(parse_header(file, line, text)?);
                 Ok(())
             }
+            Some(_) if text.starts_with('#') => Ok(()),
             Some(columns) => {
                 let (found, expected) = (text.split(',').count(), columns.len());
                 if found != expected {
@@ -73,9 +82,35 @@ impl Table {
             }
         })?;
         match columns {
-            Some(columns) if !rows.is_empty() => Ok(Self { file: file.into(), columns, text: all, rows }),
+            Some(columns) if !rows.is_empty() => Ok(Self { file: file.into(), columns, text: all, rows, is_euroc }),
             _ => Err(BagError::NoRows { file: file.into() }),
         }
+    }
+
+    /// Whether it is a EuRoC track, whose columns are `t` in nanoseconds, [`POSE_COLUMNS`], and others by their own names.
+    pub fn is_euroc(&self) -> bool {
+        self.is_euroc
+    }
+
+    /// When each pose of a EuRoC track held, in nanoseconds since the epoch; `None` of any other table.
+    ///
+    /// # Errors
+    /// Where a stamp is not a whole number.
+    pub fn stamps_ns(&self) -> Result<Option<Vec<i64>>, BagError> {
+        if !self.is_euroc {
+            return Ok(None);
+        }
+        let index = self.index_of(EUROC[0].1)?;
+        let stamp = |row: usize| {
+            let text = fields(self.row_text(row)).nth(index).unwrap_or_default();
+            text.parse().map_err(|_| BagError::NotANumber {
+                file: self.file.clone(),
+                line: self.rows[row].line,
+                column: EUROC[0].1.into(),
+                text: text.chars().take(40).collect(),
+            })
+        };
+        (0..self.len()).map(stamp).collect::<Result<_, _>>().map(Some)
     }
 
     /// What the table is called in errors.
@@ -180,6 +215,28 @@ pub(crate) fn row_from_pose(pose: &Pose, separator: &str) -> String {
 
 fn fields(text: &str) -> impl Iterator<Item = &str> {
     text.split(',').map(|field| field.trim().trim_matches('"'))
+}
+
+/// The columns of EuRoC that have a name here. Its header is a comment, and its quaternions have w first.
+const EUROC: [(&str, &str); 8] = [
+    ("timestamp", "t"),
+    ("p_RS_R_x", "x"),
+    ("p_RS_R_y", "y"),
+    ("p_RS_R_z", "z"),
+    ("q_RS_x", "qx"),
+    ("q_RS_y", "qy"),
+    ("q_RS_z", "qz"),
+    ("q_RS_w", "qw"),
+];
+
+/// The columns that a comment names, where it is the header of a EuRoC track.
+fn euroc_columns(comment: &str) -> Option<Vec<String>> {
+    // Units stand behind the names, in brackets.
+    let bare = |field: &str| field.split('[').next().unwrap_or_default().trim().to_owned();
+    let named: Vec<String> = fields(comment.trim_start_matches('#')).map(bare).collect();
+    let known = |name: &String| EUROC.iter().find(|(theirs, _)| theirs == name).map(|(_, ours)| (*ours).to_owned());
+    let has_all = EUROC.iter().all(|(theirs, _)| named.iter().filter(|name| name == theirs).count() == 1);
+    has_all.then(|| named.iter().map(|name| known(name).unwrap_or_else(|| name.clone())).collect())
 }
 
 fn parse_header(file: &str, line: usize, text: &str) -> Result<Vec<String>, BagError> {

@@ -6,7 +6,8 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use pose_bag::{BagError, Compression, PoseSet, read_poses};
+use pose_bag::msg::{Message, PoseStamped};
+use pose_bag::{BagError, Compression, PoseSet, Selection, encode, read_poses, recover_poses};
 use proptest::prelude::*;
 use support::small_bag;
 
@@ -67,7 +68,7 @@ fn a_flipped_bit_in_the_poses_does_not_pass() {
     let at = bytes.windows(8).position(|window| window == number).unwrap();
     bytes[at] ^= 1; // the last digit of a coordinate: still a pose
     let error = read_bytes(folder.path(), &bytes).unwrap_err().to_string();
-    assert!(error.ends_with("after 40 readable messages: the checksum of a chunk does not match its bytes"), "{error}");
+    assert!(error.ends_with("after 0 readable messages: the checksum of a chunk does not match its bytes"), "{error}");
 }
 
 #[test]
@@ -95,12 +96,130 @@ fn claims_that_crash_trusting_readers() {
 }
 
 #[test]
+fn a_damaged_chunk_is_lost_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("chunks.mcap");
+    let options = mcap::WriteOptions::new().profile("ros2").chunk_size(Some(2000)).compression(None);
+    let mut writer = options.create(fs::File::create(&path).unwrap()).unwrap();
+    for message in
+        mcap::MessageStream::new(&fs::read(small_bag(folder.path(), Compression::None, MESSAGES)).unwrap()).unwrap()
+    {
+        writer.write(&message.unwrap()).unwrap();
+    }
+    writer.finish().unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    let number = support::pose(20).translation.x.to_le_bytes();
+    let at = bytes.windows(8).position(|window| window == number).unwrap();
+    bytes[at] ^= 1;
+    fs::write(&path, &bytes).unwrap();
+    let error = read_poses(&path, None).unwrap_err().to_string();
+    let (sets, losses) = recover_poses(&path, &Selection::default()).unwrap();
+    assert_eq!(losses.iter().map(ToString::to_string).collect::<Vec<_>>(), [error]);
+    // A chunk is closed once it holds 2000 bytes: some 20 messages of 119 are in it.
+    let read = &sets[0].poses;
+    assert!((MESSAGES - 25..MESSAGES - 10).contains(&read.len()), "{}", read.len());
+    assert!(read.iter().all(|pose| support::poses(MESSAGES).iter().any(|whole| whole.translation == pose.translation)));
+    assert!(read.iter().all(|pose| pose.translation != support::pose(20).translation));
+}
+
+/// A chunk of so many zeros (records of opcode 0 and no length), by zstd, that claims to hold `claimed` bytes.
+fn packed_zeros(zeros: usize, claimed: u64) -> Vec<u8> {
+    let packed = zstd::bulk::compress(&vec![0; zeros], 1).unwrap();
+    let size = (packed.len() as u64).to_le_bytes();
+    let body = [&[0; 16][..], &claimed.to_le_bytes(), &[0; 4], &u32_bytes_prefixed(b"zstd"), &size, &packed].concat();
+    record(6, body.len() as u64, &body)
+}
+
+#[test]
+fn bombs_are_refused_before_they_unfold() {
+    let folder = tempfile::tempdir().unwrap();
+    let mib = 1 << 20;
+    let cases = [
+        (packed_zeros(100 * mib, 100 << 20), "claims to hold 104857600, which is not believed"),
+        (packed_zeros(100 * mib, 4000), "a chunk holds more than the 4000 bytes that it claims"),
+        (packed_zeros(mib, 1 << 60), "claims to hold 1152921504606846976, which is not believed"),
+        (packed_zeros(4000, 4001), "a chunk holds less than the 4001 bytes that it claims"),
+        // 1000 times 9 MiB out of a kilobyte or so each: a few are believed, and all others not.
+        (packed_zeros(9 * mib, 9 << 20).repeat(1000), "claims to hold 9437184, which is not believed"),
+    ];
+    for (chunk, expected) in cases {
+        let started = std::time::Instant::now();
+        let error = read_bytes(folder.path(), &after_magic(&chunk)).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+        // Unfolding 100 MiB alone takes some 50 ms; twice over two passes.
+        assert!(started.elapsed().as_millis() < 1000);
+    }
+}
+
+#[test]
+fn definitions_that_differ_are_refused_by_the_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let definition = |text: &str| {
+        let path = folder.path().join("other.mcap");
+        let mut writer = mcap::Writer::new(fs::File::create(&path).unwrap()).unwrap();
+        let schema = writer.add_schema(PoseStamped::TYPE, "ros2msg", text.as_bytes()).unwrap();
+        let channel_id = writer.add_channel(schema, "/tool", "cdr", &Default::default()).unwrap();
+        let header = mcap::records::MessageHeader { channel_id, sequence: 0, log_time: 0, publish_time: 0 };
+        let data = encode(&support::stamped("base", 0, &support::pose(1))).unwrap();
+        writer.write_to_known_channel(&header, &data).unwrap();
+        writer.finish().unwrap();
+        read_poses(&path, None).map(|sets| sets.len()).map_err(|error| error.to_string())
+    };
+    let ours = PoseStamped::DEFINITION;
+    assert_eq!(definition(ours), Ok(1));
+    let error = definition(&ours.replace("Pose pose", "Pose pose\nfloat64 confidence")).unwrap_err();
+    let expected = "topic /tool: the bag's geometry_msgs/msg/PoseStamped is not the standard one: it has the extra field confidence";
+    assert!(error.ends_with(expected), "{error}");
+    // Definitions that contain themselves, unfold to 10^60 fields, or have a megabyte.
+    let unfolding: String =
+        (0..60).map(|k| format!("===\nMSG: a/T{k}\n{}", format!("T{} x\n", k + 1).repeat(10))).collect();
+    for text in [format!("PoseStamped header\n{ours}"), format!("a/T0 header\n{unfolding}"), "a".repeat(1 << 20)] {
+        let started = std::time::Instant::now();
+        assert!(definition(&text).unwrap_err().contains("is not the standard one"));
+        assert!(started.elapsed().as_millis() < 500);
+    }
+}
+
+#[test]
 fn bytes_after_the_end_are_damage() {
     let folder = tempfile::tempdir().unwrap();
     let mut bytes = fs::read(small_bag(folder.path(), Compression::Zstd, 3)).unwrap();
     bytes.push(0);
     let error = read_bytes(folder.path(), &bytes).unwrap_err();
     assert!(matches!(error, BagError::Corrupt { messages_read: 3, .. }), "{error}");
+}
+
+#[test]
+fn names_that_would_fill_the_memory_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = u32_bytes_prefixed(&vec![b'a'; 2000]);
+    let short = u32_bytes_prefixed(b"a");
+    let cases = [
+        record(4, 2013, &[&[1, 0, 0, 0][..], &long, &short].concat()),
+        record(4, 2013, &[&[1, 0, 0, 0][..], &short, &long].concat()),
+        record(3, 2016, &[&[1, 0][..], &long, &short, &short].concat()),
+    ];
+    for records in cases {
+        let error = read_bytes(folder.path(), &after_magic(&records)).unwrap_err().to_string();
+        assert!(error.contains("has a name of 2000 bytes"), "{error}");
+    }
+}
+
+#[test]
+fn files_without_chunks_or_index_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = fs::read(small_bag(folder.path(), Compression::Zstd, MESSAGES)).unwrap();
+    let path = folder.path().join("plain.mcap");
+    for chunked in [false, true] {
+        let options = mcap::WriteOptions::new().profile("ros2").use_chunks(chunked).emit_summary_records(false);
+        let options = options.emit_message_indexes(false).emit_summary_offsets(false);
+        let mut writer = options.create(fs::File::create(&path).unwrap()).unwrap();
+        for message in mcap::MessageStream::new(&bytes).unwrap() {
+            writer.write(&message.unwrap()).unwrap();
+        }
+        writer.finish().unwrap();
+        support::assert_same(&read_poses(&path, None).unwrap()[0].poses, &support::poses(MESSAGES));
+    }
 }
 
 #[test]

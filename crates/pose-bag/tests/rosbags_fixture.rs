@@ -12,8 +12,16 @@ fn fixture(name: &str) -> String {
 }
 
 #[test]
-fn both_compressions_and_both_byte_orders_are_read() {
-    for bag in ["rosbags_none", "rosbags_zstd"] {
+fn both_storages_all_compressions_and_both_byte_orders_are_read() {
+    for bag in [
+        "rosbags_none",
+        "rosbags_zstd",
+        "rosbags_mcap_message",
+        "rosbags_mcap_file",
+        "rosbags_sqlite3_none",
+        "rosbags_sqlite3_message",
+        "rosbags_sqlite3_file",
+    ] {
         let scans = read_poses(fixture(bag), Some("/scan")).unwrap();
         assert_eq!(scans.len(), 2);
         assert_eq!((scans[0].frame_id.as_str(), scans[1].frame_id.as_str()), ("base", "a frame of odd length"));

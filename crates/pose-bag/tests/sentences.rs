@@ -87,9 +87,38 @@ fn tum() {
         ("#\n1 0 0 0 0 0 0 0\n", "track.txt, line 2: the quaternion is zero, so there is no orientation"),
         ("soon 0 0 0 0 0 0 1\n", "track.txt, line 1: t is not a number: \"soon\""),
         ("1 0 0 nan 0 0 0 1\n", "track.txt, line 1: z is not finite: NaN"),
+        ("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 0 0 1\n", "track.txt, line 2: 8 fields instead of 12"),
+        ("1 0 0 0 0 1 0 0 0 0 one 0\n", "track.txt, line 1: number 11 is not a number: \"one\""),
+        (
+            "2 0 0 0 0 1 0 0 0 0 1 0\n",
+            "track.txt, line 1: the 3 x 3 block is no rotation: it is 3.000000 away from one",
+        ),
+        (
+            "1 0 0 0 0 1 0 0 0 0 -1 0\n",
+            "track.txt, line 1: the 3 x 3 block is no rotation: it is 2.000000 away from one",
+        ),
     ];
     for (content, sentence) in cases {
         assert_eq!(folder.refusal("track.txt", content), sentence);
+    }
+}
+
+#[test]
+fn euroc() {
+    let folder = Folder::new();
+    let header = "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
+    let cases = [
+        (format!("{header}1.5,0,0,0,1,0,0,0\n"), "data.csv, line 2: t is not a number: \"1.5\""),
+        (format!("{header}1,0,0,0,0,0,0,0\n"), "data.csv, line 2: the quaternion is zero, so there is no orientation"),
+        (format!("{header}# more\n1,0,0,1,0,0,0\n"), "data.csv, line 3: 7 fields instead of 8"),
+        // Without its quaternion the comment is one like any other.
+        (
+            format!("{}\n1,2,3,4\n", header.split(",q_RS_w").next().unwrap()),
+            "data.csv, line 2: the header is missing; the first line names the columns, such as x,y,z,qx,qy,qz,qw",
+        ),
+    ];
+    for (content, sentence) in cases {
+        assert_eq!(folder.refusal("data.csv", &content), sentence, "{content}");
     }
 }
 
@@ -174,7 +203,7 @@ fn bytes_that_are_no_message() {
             "std_msgs/msg/String",
             "cdr",
             &[],
-            "raw.mcap has no topic of type geometry_msgs/msg/PoseArray or geometry_msgs/msg/PoseStamped; \
+            "raw.mcap has no topic with poses (PoseArray, PoseStamped, PoseWithCovarianceStamped, Odometry, Path, TFMessage); \
              its topics: /poses (std_msgs/msg/String)"
                 .into(),
         ),
@@ -194,7 +223,7 @@ fn files_that_are_no_bag() {
     );
     let cut = "a.mcap is cut off: it ends in the middle of a record after 0 readable messages";
     assert_eq!(folder.refusal("a.mcap", &mcap::MAGIC[..5]), cut);
-    let format = "expected .csv, .tum, .txt, .mcap or the folder of a rosbag2 bag";
+    let format = "expected .csv, .tum, .txt, .kitti, .mcap, .db3 or the folder of a rosbag2 bag";
     assert_eq!(folder.refusal("a.pdf", "%PDF"), format!("a.pdf is not a pose file: {format}"));
     let none = folder.sentence(read_poses(folder.path("none.mcap"), None));
     assert_eq!(none, "none.mcap: No such file or directory (os error 2)");
@@ -215,14 +244,17 @@ fn folders_that_are_no_bag() {
              relative_file_paths: [{files}]}}"
         )
     };
-    let convert = "are not supported; `ros2 bag convert` makes an uncompressed MCAP bag of it";
+    let convert = "are not supported; `ros2 bag convert` makes an MCAP bag of it";
     assert_eq!(
         folder.sentence(read_poses(&bag, None)),
         "bag is not the folder of a rosbag2 bag: metadata.yaml: No such file or directory (os error 2)"
     );
-    assert_eq!(sentence(&metadata("sqlite3", "", "a.db3")), format!("bag: bags with storage sqlite3 {convert}"));
-    let by_message = format!("bag: bags with compression mode MESSAGE {convert}");
-    assert_eq!(sentence(&metadata("mcap", "MESSAGE", "a.mcap")), by_message);
+    assert_eq!(sentence(&metadata("leveldb", "", "a.db")), format!("bag: bags with storage leveldb {convert}"));
+    let by_chunk = format!("bag: bags with compression mode CHUNK {convert}");
+    assert_eq!(sentence(&metadata("mcap", "CHUNK", "a.mcap")), by_chunk);
+    let unnamed = format!("bag: bags with compression by  {convert}");
+    assert_eq!(sentence(&metadata("mcap", "MESSAGE", "a.mcap")), unnamed);
+    assert_eq!(sentence(&metadata("sqlite3", "", "a.db3")), "bag/a.db3: No such file or directory (os error 2)");
     assert_eq!(sentence(&metadata("mcap", "", "a.mcap")), "bag/a.mcap: No such file or directory (os error 2)");
     let not_metadata = "bag is not the folder of a rosbag2 bag: metadata.yaml:";
     assert_eq!(sentence(&metadata("mcap", "", "")), format!("{not_metadata} relative_file_paths is empty"));

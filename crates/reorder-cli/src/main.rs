@@ -7,6 +7,7 @@ mod order;
 mod output;
 mod plan;
 mod progress;
+mod replay;
 mod simulate;
 mod source;
 
@@ -27,6 +28,8 @@ enum Command {
     Order(order::Arguments),
     /// Plan an audited joint trajectory through unordered poses
     Plan(plan::Arguments),
+    /// Put the poses of recordings in order, of one bag or many, and compare with how they were recorded
+    Replay(replay::Arguments),
     /// Execute a planned trajectory in MuJoCo (by the program reorder-simulate, which needs MuJoCo; see its --help)
     #[command(disable_help_flag = true)]
     Simulate(simulate::Arguments),
@@ -36,6 +39,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Order(arguments) => order::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
     };
     match result {

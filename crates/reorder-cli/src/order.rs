@@ -91,7 +91,7 @@ enum RepairChoice {
     Off,
 }
 
-fn weight(text: &str) -> Result<Weight, String> {
+pub(crate) fn weight(text: &str) -> Result<Weight, String> {
     match text {
         "auto" => Ok(Weight::Auto),
         number => number.parse().map(Weight::MetresPerRadian).map_err(|_| "neither a number nor auto".to_owned()),

@@ -54,10 +54,20 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum MinimumVerdict {
+pub(crate) enum MinimumVerdict {
     Ambiguous,
     Plausible,
     Certified,
+}
+
+impl From<MinimumVerdict> for Verdict {
+    fn from(verdict: MinimumVerdict) -> Self {
+        match verdict {
+            MinimumVerdict::Ambiguous => Self::Ambiguous,
+            MinimumVerdict::Plausible => Self::Plausible,
+            MinimumVerdict::Certified => Self::Certified,
+        }
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -136,19 +146,14 @@ fn configure(arguments: &Arguments) -> Result<Config, Failure> {
     };
     config.topology = arguments.topology.map_or(config.topology, Into::into);
     config.start = arguments.start.or(config.start);
-    config.minimum_verdict = match arguments.minimum_verdict {
-        None => config.minimum_verdict,
-        Some(MinimumVerdict::Ambiguous) => Verdict::Ambiguous,
-        Some(MinimumVerdict::Plausible) => Verdict::Plausible,
-        Some(MinimumVerdict::Certified) => Verdict::Certified,
-    };
+    config.minimum_verdict = arguments.minimum_verdict.map_or(config.minimum_verdict, Into::into);
     config.metres_per_radian = arguments.metres_per_radian.unwrap_or(config.metres_per_radian);
     config.timing.rate_hz = arguments.rate.unwrap_or(config.timing.rate_hz);
     Ok(config)
 }
 
 /// A shipped robot, with its own limits or others, or a robot from files.
-fn load_robot(name: &str, limits: Option<&Path>) -> Result<Robot, Failure> {
+pub(crate) fn load_robot(name: &str, limits: Option<&Path>) -> Result<Robot, Failure> {
     let read = |path: &Path| {
         fs::read_to_string(path).map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))
     };

@@ -5,18 +5,21 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use planner::se3_geom::nalgebra::{Isometry2, SVector, Similarity2, UnitQuaternion, Vector2, Vector3};
 use planner::se3_geom::{Pose, pose_from_xyzw, rotation_from_xyzw, xyzw_from_rotation};
-use pose_bag::{POSE_COLUMNS, PoseSet, Table, read_poses, read_table};
+use pose_bag::{Grouping, POSE_COLUMNS, PoseSet, Selection, Table, read_table, recover_poses};
 
 use crate::failure::Failure;
 
 #[derive(Args)]
 pub(crate) struct Source {
-    /// CSV with a header, TUM, an MCAP file or the folder of a rosbag2 bag; `-` reads CSV from standard input
+    /// CSV with a header, EuRoC, TUM, KITTI, an MCAP or .db3 file or the folder of a rosbag2 bag; `-` reads CSV from standard input
     pub(crate) input: PathBuf,
     /// Topic, where a bag has several with poses
     #[arg(long)]
     topic: Option<String>,
-    /// Which PoseArray message of the topic, counted from 0; needed where there are several
+    /// The frames whose transforms are meant, where the topic is of type TFMessage
+    #[arg(long, value_name = "PARENT:CHILD", value_parser = frame_pair)]
+    frames: Option<(String, String)>,
+    /// Which PoseArray or Path message of the topic, counted from 0; needed where there are several
     #[arg(long)]
     message: Option<usize>,
 }
@@ -66,6 +69,13 @@ pub(crate) struct Rows {
     pub(crate) table: Option<Table>,
 }
 
+/// `parent:child`, without leading slashes.
+pub(crate) fn frame_pair(text: &str) -> Result<(String, String), String> {
+    let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
+    let (parent, child) = text.split_once(':').ok_or("not two frames with a colon between")?;
+    Ok((bare(parent), bare(child)))
+}
+
 impl Source {
     /// Standard input and `.csv` are tables; everything else holds poses.
     fn is_table(&self) -> bool {
@@ -111,7 +121,11 @@ impl Source {
     /// The one set of poses that is meant.
     pub(crate) fn poses(&self) -> Result<PoseSet, Failure> {
         let name = self.input.display();
-        let mut sets = read_poses(&self.input, self.topic.as_deref()).map_err(Failure::bad_input)?;
+        let selection = Selection { topic: self.topic.clone(), frames: self.frames.clone(), grouping: Grouping::Whole };
+        let (mut sets, losses) = recover_poses(&self.input, &selection).map_err(Failure::bad_input)?;
+        if let Some(loss) = losses.first() {
+            return Err(Failure::bad_input(loss));
+        }
         let index = match self.message {
             Some(index) if index < sets.len() => index,
             Some(index) => {
@@ -237,6 +251,9 @@ fn columns_of(table: &Table, manifold: Manifold) -> Vec<&str> {
 /// The manifold whose columns these are, all of them and no others but `t`: a column that nobody looks at could be the one that
 /// tells points apart.
 fn manifold_of_columns(table: &Table) -> Result<Manifold, Failure> {
+    if table.is_euroc() {
+        return Ok(Manifold::Se3);
+    }
     let present: Vec<&str> = table.columns().iter().map(String::as_str).filter(|&column| column != TIME).collect();
     let is_all = |columns: &[&str]| columns.len() == present.len() && columns.iter().all(|c| present.contains(c));
     let found = COLUMNS.iter().find(|(columns, _)| is_all(columns));

@@ -254,3 +254,55 @@ fn a_weight_for_points_that_have_none_is_refused() {
     let found: serde_json::Value = serde_json::from_str(&out(&reorder(&["order", &path]))).unwrap();
     assert!(found["weight_stable"].is_null(), "a weight that does not exist was never tried");
 }
+
+#[test]
+fn order_reads_kitti_euroc_and_transforms_as_it_reads_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    // Line i of each file is place 3i mod 10 on a quarter circle, turned about z by its angle.
+    let angles: Vec<f64> = (0..10).map(|i| f64::from((i * 3) % 10) * 0.15).collect();
+    let half = |a: f64| ((0.5 * a).sin(), (0.5 * a).cos());
+    let csv = arc("x,y,z,qx,qy,qz,qw", |a| format!("{},{},0.5,0,0,{},{}", a.cos(), a.sin(), half(a).0, half(a).1));
+    let euroc = arc(
+        "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],v_RS_R_x [m s^-1]",
+        |a| format!("1403636580838555648,{},{},0.5,{},0,0,{},7", a.cos(), a.sin(), half(a).1, half(a).0),
+    );
+    let kitti = |a: f64| {
+        let (s, c) = a.sin_cos();
+        format!("{c} {} 0 {c} {s} {c} 0 {s} 0 0 1 0.5\n", -s)
+    };
+    let kitti: String = angles.iter().map(|&a| kitti(a)).collect();
+    let bag = folder.path().join("tf.mcap");
+    write_transforms(&bag, &angles);
+    let expected = out(&reorder(&["order", &file(&folder, "poses.csv", &csv), "--format", "indices"]));
+    assert_eq!(expected.lines().count(), 10);
+    let inputs = [file(&folder, "data.csv", &euroc), file(&folder, "00.txt", &kitti), bag.display().to_string()];
+    for input in &inputs {
+        let frames: &[&str] = if input.ends_with(".mcap") { &["--frames", "base:tool"] } else { &[] };
+        let arguments = [&["order", input.as_str(), "--format", "indices"], frames].concat();
+        assert_eq!(out(&reorder(&arguments)), expected, "{input}");
+    }
+    let (code, said) = refusal(&["order", &inputs[2]]);
+    assert!(code == 2 && said.ends_with("name one of the frame pairs map:odom, base:tool"), "{said}");
+    // The columns that no pose has stay in the rows.
+    let ordered = out(&reorder(&["order", &inputs[0], "--format", "csv"]));
+    assert!(ordered.starts_with("t,x,y,z,qw,qx,qy,qz,v_RS_R_x\n1403636580838555648,"), "{ordered}");
+}
+
+fn write_transforms(path: &Path, angles: &[f64]) {
+    use planner::pose_bag::BagWriter;
+    use planner::pose_bag::msg::{Header, Quaternion, TfMessage, Transform, TransformStamped, Vector3};
+    let mut bag = BagWriter::create(path).unwrap();
+    for (k, a) in (0..).zip(angles) {
+        let transform = |parent: &str, child: &str, a: f64| TransformStamped {
+            header: Header { frame_id: parent.into(), ..Header::default() },
+            child_frame_id: child.into(),
+            transform: Transform {
+                translation: Vector3 { x: a.cos(), y: a.sin(), z: 0.5 },
+                rotation: Quaternion { x: 0.0, y: 0.0, z: (0.5 * a).sin(), w: (0.5 * a).cos() },
+            },
+        };
+        let transforms = vec![transform("map", "odom", 1.0), transform("base", "tool", *a)];
+        bag.write("/tf", k, &TfMessage { transforms }).unwrap();
+    }
+    bag.finish().unwrap();
+}

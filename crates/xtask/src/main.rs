@@ -45,7 +45,7 @@ enum Chore {
         #[arg(long, default_value_t = 7)]
         seed: u64,
     },
-    /// Measure an area (geometry, ordering, manipulator, node) beside the libraries that others would use, and print the table
+    /// Measure an area (bags, geometry, ordering, manipulator, node) beside the libraries that others would use, and print the table
     Bench { area: String },
     /// Set up, build, and put the ROS package into an ament prefix, for `ros2 run` and `ros2 launch`
     Install {

@@ -24,8 +24,18 @@ pub(crate) enum Soak {
     Certified,
     /// Random coordinates, ordered: the number is how many seconds
     FuzzOrders,
+    /// Runs of `reorder replay`, so many, each stopped at a random moment and resumed
+    Replay,
     /// Random bytes, read as a table: the number is how many seconds
     FuzzTables,
+    /// The same as TUM or KITTI
+    FuzzTracks,
+    /// Random bytes, decoded as messages of every type
+    FuzzMessages,
+    /// Random bytes, read as an MCAP file
+    FuzzMcap,
+    /// Random bytes, read as an SQLite file or as the metadata of a bag
+    FuzzBags,
 }
 
 pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
@@ -37,7 +47,12 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
         Soak::Orders => run_test(layout, "reorder", "random_orders", amount),
         Soak::Certified => run_test(layout, "reorder", "certified_orders", amount),
         Soak::FuzzOrders => fuzz(layout, "orders", amount),
+        Soak::Replay => run_test(layout, "reorder-cli", "replay", amount),
         Soak::FuzzTables => fuzz(layout, "tables", amount),
+        Soak::FuzzTracks => fuzz(layout, "tracks", amount),
+        Soak::FuzzMessages => fuzz(layout, "messages", amount),
+        Soak::FuzzMcap => fuzz(layout, "mcap", amount),
+        Soak::FuzzBags => fuzz(layout, "bags", amount),
     }
 }
 

@@ -4,6 +4,7 @@
 //! costs by name; the programs take turns for some rounds, so that a busy spell of the machine falls on all of them, and the
 //! median over the rounds counts.
 
+mod bags;
 mod figure;
 mod geometry;
 mod manipulator;
@@ -21,7 +22,8 @@ use figure::Figure;
 type Measure = fn(&Layout) -> Outcome<Vec<Figure>>;
 
 /// What can be measured. A new area is a file and a line here.
-const AREAS: [(&str, Measure); 4] = [
+const AREAS: [(&str, Measure); 5] = [
+    ("bags", bags::measure),
     ("geometry", geometry::measure),
     ("manipulator", manipulator::measure),
     ("node", node::measure),
@@ -52,7 +54,10 @@ mod tests {
     fn an_unknown_area_is_refused_in_one_sentence_that_names_the_known_ones() {
         let folder = tempfile::tempdir().unwrap();
         let failure = run(&Layout::at(folder.path()), "astrology").unwrap_err().to_string();
-        assert_eq!(failure, "there is no benchmark of astrology: choose one of geometry, manipulator, node, ordering");
+        assert_eq!(
+            failure,
+            "there is no benchmark of astrology: choose one of bags, geometry, manipulator, node, ordering"
+        );
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing was made for it");
     }
 }

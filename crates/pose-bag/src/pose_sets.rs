@@ -1,0 +1,263 @@
+//! Sets of poses out of the messages of a bag.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use se3_geom::Pose;
+
+use crate::BagError;
+use crate::bag_reader::BagReader;
+use crate::channel::BagMessage;
+use crate::msg::{self, Message};
+use crate::pose_set::{Grouping, Origin, PoseSet, Selection};
+
+/// Frame pairs that are told apart.
+const MAX_PAIRS: usize = 100;
+
+/// Poses of one topic of a bag, and what of the bag is lost.
+///
+/// Messages are taken in the order in which they were recorded.
+pub(crate) fn read_bag(bag: &BagReader, selection: &Selection) -> Result<(Vec<PoseSet>, Vec<BagError>), BagError> {
+    let topic = match &selection.topic {
+        None => choose(bag)?,
+        Some(topic) => topic.clone(),
+    };
+    let mut collector = Collector { selection, sets: Vec::new(), singles: Vec::new(), frame: None, pairs: Vec::new() };
+    let mut is_there = false;
+    let losses = bag.for_each(&mut |message| {
+        if message.topic() != topic {
+            return Ok(());
+        }
+        let Some(kind) = Kind::of(message.message_type()) else { return Err(not_poses(bag, &topic)?) };
+        is_there = true;
+        collector.take(kind, message)
+    })?;
+    if !is_there {
+        return Err(losses.into_iter().next().map_or_else(|| not_poses(bag, &topic), Ok)?);
+    }
+    let sets = collector.into_sets(bag, &topic)?;
+    if sets.iter().all(|set| set.poses.is_empty()) {
+        return Err(losses.into_iter().next().unwrap_or_else(|| BagError::Empty { file: bag.name().to_owned() }));
+    }
+    Ok((sets, losses))
+}
+
+fn not_poses(bag: &BagReader, topic: &str) -> Result<BagError, BagError> {
+    let topics = list(&bag.topics()?.0, |_| true);
+    Ok(BagError::NotAPoseTopic { file: bag.name().to_owned(), topic: topic.to_owned(), topics })
+}
+
+/// What a message with poses is. Where no topic is named, a later kind is chosen only where there is none of an earlier: a path is
+/// mostly made of the poses, and transforms are everywhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Array,
+    Single(Single),
+    Path,
+    Transforms,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Single {
+    Stamped,
+    WithCovariance,
+    Odometry,
+}
+
+impl Kind {
+    fn of(message_type: &str) -> Option<Self> {
+        Some(match message_type {
+            msg::PoseArray::TYPE => Self::Array,
+            msg::PoseStamped::TYPE => Self::Single(Single::Stamped),
+            msg::PoseWithCovarianceStamped::TYPE => Self::Single(Single::WithCovariance),
+            msg::Odometry::TYPE => Self::Single(Single::Odometry),
+            msg::Path::TYPE => Self::Path,
+            msg::TfMessage::TYPE => Self::Transforms,
+            _ => return None,
+        })
+    }
+
+    fn rank(self) -> u8 {
+        match self {
+            Self::Array | Self::Single(_) => 0,
+            Self::Path => 1,
+            Self::Transforms => 2,
+        }
+    }
+}
+
+fn choose(bag: &BagReader) -> Result<String, BagError> {
+    let (topics, losses) = bag.topics()?;
+    let kinds: Vec<_> = topics.iter().filter_map(|(topic, of)| Some((topic, Kind::of(of)?))).collect();
+    let file = || bag.name().to_owned();
+    let Some(rank) = kinds.iter().map(|(_, kind)| kind.rank()).min() else {
+        let none = || BagError::NoPoseTopic { file: file(), topics: list(&topics, |_| true) };
+        return Err(losses.into_iter().next().unwrap_or_else(none));
+    };
+    let mut foremost = kinds.iter().filter(|(_, kind)| kind.rank() == rank);
+    match (foremost.next(), foremost.next()) {
+        (Some((topic, _)), None) => Ok((*topic).clone()),
+        _ => Err(BagError::SeveralPoseTopics { file: file(), topics: list(&topics, |of| Kind::of(of).is_some()) }),
+    }
+}
+
+fn list(topics: &BTreeMap<String, String>, is_listed: impl Fn(&str) -> bool) -> String {
+    let listed = topics.iter().filter(|(_, message_type)| is_listed(message_type));
+    let listed: Vec<_> = listed.map(|(topic, message_type)| format!("{topic} ({message_type})")).collect();
+    if listed.is_empty() { "none".to_owned() } else { listed.join(", ") }
+}
+
+/// A pose from a message that holds one.
+struct Stamped {
+    log_time_ns: u64,
+    stamp_ns: i64,
+    pose: Pose,
+}
+
+struct Collector<'a> {
+    selection: &'a Selection,
+    /// Of messages that hold many poses.
+    sets: Vec<PoseSet>,
+    singles: Vec<Stamped>,
+    /// Frame of the poses of `singles`, and the file of the first.
+    frame: Option<(String, PathBuf)>,
+    /// Frame pairs of transforms, parent first, as they first came.
+    pairs: Vec<(String, String)>,
+}
+
+impl Collector<'_> {
+    fn take(&mut self, kind: Kind, message: &BagMessage<'_>) -> Result<(), BagError> {
+        match kind {
+            Kind::Array => {
+                let array: msg::PoseArray = message.decode()?;
+                self.take_set(message, array.header, &array.poses, None)
+            }
+            Kind::Path => {
+                let path: msg::Path = message.decode()?;
+                let stamps_ns = path.poses.iter().map(|pose| pose.header.stamp.to_nanos()).collect();
+                let poses: Vec<_> = path.poses.iter().map(|pose| pose.pose).collect();
+                self.take_set(message, path.header, &poses, Some(stamps_ns))
+            }
+            Kind::Single(Single::Stamped) => {
+                let stamped: msg::PoseStamped = message.decode()?;
+                self.take_single(message, stamped.header, &stamped.pose, 0)
+            }
+            Kind::Single(Single::WithCovariance) => {
+                let stamped: msg::PoseWithCovarianceStamped = message.decode()?;
+                self.take_single(message, stamped.header, &stamped.pose.pose, 0)
+            }
+            Kind::Single(Single::Odometry) => {
+                let odometry: msg::Odometry = message.decode()?;
+                self.take_single(message, odometry.header, &odometry.pose.pose, 0)
+            }
+            Kind::Transforms => self.take_transforms(message),
+        }
+    }
+
+    fn take_set(
+        &mut self,
+        message: &BagMessage<'_>,
+        header: msg::Header,
+        poses: &[msg::Pose],
+        stamps_ns: Option<Vec<i64>>,
+    ) -> Result<(), BagError> {
+        let convert = |(index, pose)| checked(message, index, pose);
+        let poses = poses.iter().enumerate().map(convert).collect::<Result<_, _>>()?;
+        let origin = Origin {
+            file: message.file.into(),
+            topic: Some(message.topic().to_owned()),
+            message: Some(message.index()),
+        };
+        let log_time_ns = message.log_time_ns;
+        self.sets.push(PoseSet { frame_id: header.frame_id, poses, stamps_ns, log_time_ns, origin });
+        Ok(())
+    }
+
+    fn take_single(
+        &mut self,
+        message: &BagMessage<'_>,
+        header: msg::Header,
+        pose: &msg::Pose,
+        index: usize,
+    ) -> Result<(), BagError> {
+        let pose = checked(message, index, pose)?;
+        let (expected, _) = self.frame.get_or_insert_with(|| (header.frame_id.clone(), message.file.into()));
+        if *expected != header.frame_id {
+            return Err(BagError::MixedFrames {
+                file: message.file.to_owned(),
+                topic: message.topic().to_owned(),
+                message: message.index(),
+                expected: expected.clone(),
+                found: header.frame_id,
+            });
+        }
+        let (log_time_ns, stamp_ns) = (message.log_time_ns, header.stamp.to_nanos());
+        self.singles.push(Stamped { log_time_ns, stamp_ns, pose });
+        Ok(())
+    }
+
+    fn take_transforms(&mut self, message: &BagMessage<'_>) -> Result<(), BagError> {
+        let transforms = message.decode::<msg::TfMessage>()?.transforms;
+        for (index, transform) in transforms.into_iter().enumerate() {
+            let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
+            let pair = (bare(&transform.header.frame_id), bare(&transform.child_frame_id));
+            if self.pairs.len() < MAX_PAIRS && !self.pairs.contains(&pair) {
+                self.pairs.push(pair.clone());
+            }
+            if self.selection.frames.as_ref().or(self.pairs.first()) == Some(&pair) {
+                let (t, orientation) = (transform.transform.translation, transform.transform.rotation);
+                let pose = msg::Pose { position: msg::Point { x: t.x, y: t.y, z: t.z }, orientation };
+                let header = msg::Header { stamp: transform.header.stamp, frame_id: pair.0 };
+                self.take_single(message, header, &pose, index)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn into_sets(mut self, bag: &BagReader, topic: &str) -> Result<Vec<PoseSet>, BagError> {
+        let is_undecided = match &self.selection.frames {
+            None => self.pairs.len() > 1,
+            Some(wanted) => !self.pairs.is_empty() && !self.pairs.contains(wanted),
+        };
+        if is_undecided {
+            let pairs: Vec<_> = self.pairs.iter().map(|(parent, child)| format!("{parent}:{child}")).collect();
+            let (file, topic) = (bag.name().to_owned(), topic.to_owned());
+            return Err(BagError::FramePair { file, topic, pairs: pairs.join(", ") });
+        }
+        let mut sets = self.sets;
+        sets.sort_by_key(|set| set.log_time_ns);
+        self.singles.sort_by_key(|stamped| stamped.log_time_ns);
+        let (frame_id, file) = self.frame.unwrap_or_default();
+        let (mut begun_ns, mut last_ns) = (0, 0);
+        for Stamped { log_time_ns, stamp_ns, pose } in self.singles {
+            let begins = sets.is_empty()
+                || match self.selection.grouping {
+                    Grouping::Whole => false,
+                    Grouping::Window { length_ns } => log_time_ns - begun_ns >= length_ns,
+                    Grouping::Gap { longest_ns } => log_time_ns - last_ns > longest_ns,
+                };
+            if begins {
+                begun_ns = log_time_ns;
+                let origin = Origin { file: file.clone(), topic: Some(topic.to_owned()), message: None };
+                let (frame_id, stamps_ns) = (frame_id.clone(), Some(Vec::new()));
+                sets.push(PoseSet { frame_id, poses: Vec::new(), stamps_ns, log_time_ns, origin });
+            }
+            last_ns = log_time_ns;
+            if let Some(PoseSet { poses, stamps_ns: Some(stamps_ns), .. }) = sets.last_mut() {
+                poses.push(pose);
+                stamps_ns.push(stamp_ns);
+            }
+        }
+        Ok(sets)
+    }
+}
+
+fn checked(message: &BagMessage<'_>, index: usize, pose: &msg::Pose) -> Result<Pose, BagError> {
+    pose.to_pose().map_err(|reason| BagError::InvalidPoseInMessage {
+        file: message.file.to_owned(),
+        topic: message.topic().to_owned(),
+        message: message.index(),
+        pose: index,
+        reason,
+    })
+}

@@ -1,0 +1,227 @@
+//! One bag: its sets put in order, and the bag that is made of them.
+
+use std::path::Path;
+
+use planner::manipulator::Robot;
+use planner::pose_bag::msg::{
+    Header, JointState, MarkerArray, Path as PathMessage, PoseArray, PoseStamped, Text, Time,
+};
+use planner::pose_bag::{BagReader, BagWriter, OfferedQos, PoseSet, Selection, msg, recover_poses};
+use planner::reorder::{Options, Ordering, Verdict, Weight, order_weighted};
+use planner::se3_geom::{Pose, Se3};
+use planner::{Config, Plan, Request, interpolate, path_along, plan, trajectory_message};
+use serde::{Deserialize, Serialize};
+
+use crate::replay::inputs::{Input, InputFile};
+use crate::replay::markers::markers;
+use crate::replay::score::Score;
+use crate::replay::summary::{BagSummary, SetSummary, Status, TrajectorySummary};
+
+/// The topic on which an output says what it was made of and how.
+const REPORT: &str = "/reorder/report";
+
+/// How bags are replayed.
+pub(crate) struct Task {
+    /// One for each topic.
+    pub(crate) selections: Vec<Selection>,
+    pub(crate) options: Options,
+    pub(crate) weight: Weight,
+    pub(crate) score: bool,
+    pub(crate) robot: Option<Robot>,
+    pub(crate) minimum_verdict: Verdict,
+    /// All of the above, and the program's version, in words.
+    pub(crate) settings: String,
+}
+
+/// What an output holds about itself.
+#[derive(Serialize, Deserialize)]
+struct Report {
+    settings: String,
+    input: Vec<InputFile>,
+    summary: BagSummary,
+}
+
+/// A set in order, with what came of it.
+struct Replayed {
+    set: PoseSet,
+    summary: SetSummary,
+    ordering: Option<Ordering>,
+    curve: Vec<Pose>,
+    plan: Option<Plan>,
+}
+
+/// Replays a bag into `output`; one that an earlier run made of the same bag in the same way is left as it is. `advance` is told
+/// which part of the work is done, from 0 to 1.
+pub(crate) fn replay(input: &Input, output: Option<&Path>, task: &Task, advance: &dyn Fn(f64)) -> BagSummary {
+    if let Some(kept) = output.and_then(|output| earlier(input, output, task)) {
+        return kept;
+    }
+    let name = input.path.display().to_string();
+    replay_anew(input, output, task, advance).unwrap_or_else(|error| BagSummary::broken(name, error))
+}
+
+/// What an earlier run found, where its output is whole and would be the same again.
+fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
+    let mut report: Option<Report> = None;
+    let losses = BagReader::open(output).ok()?.for_each(&mut |message| {
+        if message.topic() == REPORT {
+            report = serde_json::from_str(&message.decode::<Text>()?.data).ok();
+        }
+        Ok(())
+    });
+    let report = report.filter(|_| losses.is_ok_and(|losses| losses.is_empty()))?;
+    let is_same = report.settings == task.settings && report.input == input.files;
+    is_same.then(|| BagSummary {
+        bag: input.path.display().to_string(),
+        output: Some(output.display().to_string()),
+        status: Status::Kept,
+        ..report.summary
+    })
+}
+
+fn replay_anew(input: &Input, output: Option<&Path>, task: &Task, advance: &dyn Fn(f64)) -> Result<BagSummary, String> {
+    let mut lost = Vec::new();
+    let mut sets = Vec::new();
+    for selection in &task.selections {
+        let (found, losses) = recover_poses(&input.path, selection).map_err(|error| error.to_string())?;
+        sets.extend(found);
+        // Every pass over a bag meets the same damage.
+        lost = losses.iter().map(ToString::to_string).collect();
+    }
+    let count = sets.len() as f64;
+    let replayed: Vec<Replayed> = (1..)
+        .zip(sets)
+        .map(|(done, set)| {
+            let replayed = replay_set(set, task);
+            advance(f64::from(done) / count);
+            replayed
+        })
+        .collect();
+    let summary = BagSummary {
+        bag: input.path.display().to_string(),
+        status: Status::Done,
+        error: None,
+        lost,
+        output: output.map(|output| output.display().to_string()),
+        sets: replayed.iter().map(|replayed| replayed.summary.clone()).collect(),
+    };
+    if let Some(output) = output {
+        write(input, output, task, &replayed, &summary).map_err(|error| error.to_string())?;
+    }
+    Ok(summary)
+}
+
+fn replay_set(set: PoseSet, task: &Task) -> Replayed {
+    let mut summary = SetSummary {
+        topic: set.origin.topic.clone().unwrap_or_default(),
+        message: set.origin.message,
+        n: set.poses.len(),
+        error: None,
+        order: Vec::new(),
+        topology: None,
+        verdict: None,
+        doubts: 0,
+        score: None,
+        trajectory: None,
+        refused: None,
+    };
+    // Stamps play no part in it.
+    let ordering = match order_weighted::<Se3>(&set.poses, task.weight, &task.options) {
+        Ok(ordering) => ordering,
+        Err(error) => {
+            summary.error = Some(error.to_string());
+            return Replayed { set, summary, ordering: None, curve: Vec::new(), plan: None };
+        }
+    };
+    summary.order.clone_from(&ordering.order);
+    summary.topology = Some(ordering.topology);
+    summary.verdict = Some(ordering.verdict);
+    summary.doubts = ordering.doubts.len();
+    summary.score = task.score.then(|| Score::of(&set.poses, set.stamps_ns.as_deref(), &ordering));
+    let metres_per_radian = ordering.metres_per_radian.unwrap_or(Config::default().metres_per_radian);
+    let plan = task.robot.as_ref().map(|robot| {
+        let config = Config {
+            metres_per_radian,
+            topology: task.options.topology,
+            minimum_verdict: task.minimum_verdict,
+            ..Config::default()
+        };
+        let request = Request { frame_id: set.frame_id.clone(), poses: set.poses.clone(), ..Request::default() };
+        plan(robot, &config, &request)
+    });
+    let (plan, curve) = match plan {
+        Some(Ok(plan)) => {
+            let (points, duration_s) = (plan.trajectory.points.len(), plan.trajectory.duration_s());
+            summary.trajectory = Some(TrajectorySummary { points, duration_s });
+            let curve = plan.path();
+            (Some(plan), Ok(curve))
+        }
+        Some(Err(refusal)) => {
+            summary.refused = Some(refusal.to_string());
+            (None, interpolate(&set.poses, &ordering, metres_per_radian).map(|spline| path_along(&spline)))
+        }
+        None => (None, interpolate(&set.poses, &ordering, metres_per_radian).map(|spline| path_along(&spline))),
+    };
+    let curve = curve.unwrap_or_else(|refusal| {
+        summary.refused.get_or_insert(refusal.to_string());
+        ordering.distinct().iter().map(|&row| set.poses[row]).collect()
+    });
+    Replayed { set, summary, ordering: Some(ordering), curve, plan }
+}
+
+fn write(
+    input: &Input,
+    output: &Path,
+    task: &Task,
+    replayed: &[Replayed],
+    summary: &BagSummary,
+) -> Result<(), planner::pose_bag::BagError> {
+    let mut bag = BagWriter::create(output)?;
+    let mut end_ns = 0;
+    for one in replayed {
+        // Several topics must not mingle; one has the names that the node gives.
+        let of = if task.selections.len() > 1 { one.summary.topic.as_str() } else { "" };
+        end_ns = end_ns.max(write_set(&mut bag, of, one)?);
+    }
+    let report = Report { settings: task.settings.clone(), input: input.files.clone(), summary: summary.clone() };
+    let data = serde_json::to_string(&report).unwrap_or_default();
+    bag.add_topic::<Text>(REPORT, OfferedQos::TransientLocal)?;
+    bag.write(REPORT, end_ns, &Text { data })?;
+    bag.finish()
+}
+
+/// The time of its last message.
+fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed) -> Result<u64, planner::pose_bag::BagError> {
+    let start_ns = one.set.log_time_ns;
+    let Some(ordering) = &one.ordering else { return Ok(start_ns) };
+    let header = |at_ns: u64| msg::Header {
+        stamp: i64::try_from(at_ns).ok().and_then(Time::from_nanos).unwrap_or_default(),
+        frame_id: one.set.frame_id.clone(),
+    };
+    let ordered = ordering.distinct().iter().map(|&row| (&one.set.poses[row]).into()).collect();
+    let curve = one.curve.iter().map(|pose| PoseStamped { header: header(start_ns), pose: pose.into() }).collect();
+    let topic = |name: &str| format!("/reorder{of}/{name}");
+    bag.add_topic::<PoseArray>(&topic("ordered_poses"), OfferedQos::TransientLocal)?;
+    bag.add_topic::<PathMessage>(&topic("path"), OfferedQos::TransientLocal)?;
+    bag.add_topic::<MarkerArray>(&topic("markers"), OfferedQos::TransientLocal)?;
+    bag.write(&topic("ordered_poses"), start_ns, &PoseArray { header: header(start_ns), poses: ordered })?;
+    bag.write(&topic("path"), start_ns, &PathMessage { header: header(start_ns), poses: curve })?;
+    bag.write(&topic("markers"), start_ns, &markers(&header(start_ns), &one.set.poses, ordering, &one.curve))?;
+    let Some(plan) = &one.plan else { return Ok(start_ns) };
+    let joint_topic = |name: &str| format!("/{name}{of}");
+    let stamped = |at_ns| Header { frame_id: String::new(), ..header(at_ns) };
+    bag.write(&joint_topic("joint_trajectory"), start_ns, &trajectory_message(&plan.trajectory, stamped(start_ns)))?;
+    let mut end_ns = start_ns;
+    for point in &plan.trajectory.points {
+        end_ns = start_ns + (point.time_s * 1e9).round() as u64;
+        let state = JointState {
+            header: stamped(end_ns),
+            name: plan.trajectory.joint_names.clone(),
+            position: point.positions.clone(),
+            velocity: point.velocities.clone(),
+            effort: Vec::new(),
+        };
+        bag.write(&joint_topic("joint_states"), end_ns, &state)?;
+    }
+    Ok(end_ns)
+}

@@ -1,0 +1,108 @@
+//! Which bags are meant, and how it shows that one is another now.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use serde::{Deserialize, Serialize};
+
+use crate::failure::Failure;
+
+/// Folders in folders that are looked into.
+const MAX_DEPTH: usize = 8;
+
+/// A bag, and what its output shall be called.
+#[derive(Debug, Clone)]
+pub(crate) struct Input {
+    pub(crate) path: PathBuf,
+    pub(crate) name: String,
+    pub(crate) files: Vec<InputFile>,
+}
+
+/// What tells a file from what it was before.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct InputFile {
+    pub(crate) path: PathBuf,
+    pub(crate) bytes: u64,
+    /// When it was last changed, in ns since the epoch.
+    pub(crate) changed_ns: u64,
+}
+
+impl Input {
+    pub(crate) fn bytes(&self) -> u64 {
+        self.files.iter().map(|file| file.bytes).sum()
+    }
+
+    fn new(path: PathBuf, name: String) -> Self {
+        let inside =
+            |folder: &Path| fs::read_dir(folder).map(|entries| entries.flatten().map(|entry| entry.path()).collect());
+        let mut paths: Vec<PathBuf> =
+            if path.is_dir() { inside(&path).unwrap_or_default() } else { vec![path.clone()] };
+        paths.sort();
+        // What cannot be looked at cannot be read either, which is then said of the bag.
+        let files = paths.into_iter().filter_map(|path| {
+            let found = fs::metadata(&path).ok()?;
+            let changed = found.modified().ok()?.duration_since(UNIX_EPOCH).unwrap_or_default();
+            let changed_ns = u64::try_from(changed.as_nanos()).unwrap_or(u64::MAX);
+            Some(InputFile { path, bytes: found.len(), changed_ns })
+        });
+        Self { files: files.collect(), path, name }
+    }
+}
+
+/// The bags among the paths, and those in folders that are none themselves, by name. Names are unique.
+pub(crate) fn find(paths: &[PathBuf]) -> Result<Vec<Input>, Failure> {
+    let mut found = Vec::new();
+    for path in paths {
+        let before = found.len();
+        if path.is_dir() && !is_bag_folder(path) {
+            collect(path, "", MAX_DEPTH, &mut found)?;
+            if found.len() == before {
+                return Err(Failure::BadInput(format!("{}: there is no bag in this folder", path.display())));
+            }
+        } else {
+            let absolute = fs::canonicalize(path).map_err(|error| named(path, &error))?;
+            found.push(Input::new(path.clone(), stem(&absolute)));
+        }
+    }
+    found.sort_by(|a, b| a.name.cmp(&b.name));
+    if let Some(pair) = found.windows(2).find(|pair| pair[0].name == pair[1].name) {
+        let (name, [a, b]) = (&pair[0].name, [&pair[0].path, &pair[1].path].map(|path| path.display()));
+        return Err(Failure::BadInput(format!("{a} and {b} would both be written as {name}.mcap")));
+    }
+    Ok(found)
+}
+
+fn is_bag_folder(folder: &Path) -> bool {
+    folder.join("metadata.yaml").exists()
+}
+
+fn collect(folder: &Path, prefix: &str, depth: usize, found: &mut Vec<Input>) -> Result<(), Failure> {
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    for entry in entries.map_err(|error| named(folder, &error))? {
+        let path = entry.path();
+        let kind = entry.file_type().map_err(|error| named(&path, &error))?;
+        let name = format!("{prefix}{}", stem(&path));
+        if entry.file_name().as_encoded_bytes().starts_with(b".") {
+            continue;
+        }
+        let is_bag = path.extension().is_some_and(|extension| extension == "mcap" || extension == "db3");
+        if kind.is_dir() && is_bag_folder(&path) || !kind.is_dir() && is_bag {
+            found.push(Input::new(path, name));
+        } else if kind.is_dir() && depth > 0 {
+            collect(&path, &format!("{name}_"), depth - 1, found)?;
+        }
+    }
+    Ok(())
+}
+
+/// The name without `.mcap` or `.db3`; folders may have points in theirs.
+fn stem(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let bare = name.strip_suffix(".mcap").or_else(|| name.strip_suffix(".db3")).unwrap_or(&name);
+    bare.to_owned()
+}
+
+fn named(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::BadInput(format!("{}: {error}", path.display()))
+}

@@ -1,0 +1,142 @@
+//! What came of each bag, as JSON and as a table.
+
+use planner::reorder::{Topology, Verdict};
+use serde::{Deserialize, Serialize};
+
+use crate::replay::score::Score;
+
+/// What came of a bag.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct BagSummary {
+    pub(crate) bag: String,
+    pub(crate) status: Status,
+    /// Why nothing came of it.
+    pub(crate) error: Option<String>,
+    /// What of it could not be read.
+    pub(crate) lost: Vec<String>,
+    pub(crate) output: Option<String>,
+    pub(crate) sets: Vec<SetSummary>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Status {
+    /// Replayed now.
+    Done,
+    /// Replayed by an earlier run.
+    Kept,
+    Broken,
+}
+
+/// What came of a set of poses.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct SetSummary {
+    pub(crate) topic: String,
+    /// Message on the topic, from 0, where the set is one.
+    pub(crate) message: Option<usize>,
+    pub(crate) n: usize,
+    /// Why it has no order.
+    pub(crate) error: Option<String>,
+    pub(crate) order: Vec<usize>,
+    pub(crate) topology: Option<Topology>,
+    pub(crate) verdict: Option<Verdict>,
+    pub(crate) doubts: usize,
+    pub(crate) score: Option<Score>,
+    pub(crate) trajectory: Option<TrajectorySummary>,
+    /// Why there is no trajectory, or no curve.
+    pub(crate) refused: Option<String>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct TrajectorySummary {
+    pub(crate) points: usize,
+    pub(crate) duration_s: f64,
+}
+
+impl BagSummary {
+    pub(crate) fn broken(bag: String, error: String) -> Self {
+        Self { bag, status: Status::Broken, error: Some(error), lost: Vec::new(), output: None, sets: Vec::new() }
+    }
+}
+
+/// A line for every topic of every bag.
+pub(crate) fn table(bags: &[BagSummary]) -> String {
+    let mut rows = vec![HEADER.map(str::to_owned)];
+    for bag in bags {
+        if bag.sets.is_empty() {
+            let cells = [&bag.bag, "broken", "-", "-", "-", "-", "-", "-", "-", "-"];
+            rows.push(cells.map(str::to_owned));
+        }
+        for sets in bag.sets.chunk_by(|a, b| a.topic == b.topic) {
+            rows.push(row(bag, sets));
+        }
+    }
+    let widths: Vec<usize> =
+        (0..HEADER.len()).map(|k| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0)).collect();
+    rows.iter()
+        .map(|row| {
+            let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
+            cells.join("  ").trim_end().to_owned() + "\n"
+        })
+        .collect()
+}
+
+const HEADER: [&str; 10] =
+    ["bag", "status", "topic", "sets", "poses", "verdict", "adjacency", "tau", "differs at", "trajectory"];
+
+fn row(bag: &BagSummary, sets: &[SetSummary]) -> [String; 10] {
+    let least = |of: fn(&Score) -> f64| {
+        let scores = sets.iter().filter_map(|set| set.score.as_ref()).map(of);
+        scores.reduce(f64::min).map_or("-".to_owned(), |least| format!("{least:.4}"))
+    };
+    let durations: Vec<f64> = sets.iter().filter_map(|set| Some(set.trajectory.as_ref()?.duration_s)).collect();
+    let refused = sets.iter().filter(|set| set.refused.is_some()).count();
+    let trajectory = match (durations.len(), refused) {
+        (0, 0) => "-".to_owned(),
+        (0, refused) => format!("{refused} refused"),
+        (_, 0) => format!("{:.2} s", durations.iter().sum::<f64>()),
+        (_, refused) => format!("{:.2} s, {refused} refused", durations.iter().sum::<f64>()),
+    };
+    let status = match bag.status {
+        Status::Done => "done",
+        Status::Kept => "kept",
+        Status::Broken => "broken",
+    };
+    let status = if bag.lost.is_empty() { status.to_owned() } else { format!("{status}, damaged") };
+    let poses: usize = sets.iter().map(|set| set.n).sum();
+    let topic = sets.first().map_or_else(String::new, |set| set.topic.clone());
+    [
+        bag.bag.clone(),
+        status,
+        topic,
+        sets.len().to_string(),
+        poses.to_string(),
+        verdicts(sets),
+        least(|score| score.adjacency),
+        least(|score| score.kendall_tau),
+        first_difference(sets).unwrap_or_else(|| "-".to_owned()),
+        trajectory,
+    ]
+}
+
+/// The rows of the first recorded pair that an order does not follow, and of several sets which one it is.
+fn first_difference(sets: &[SetSummary]) -> Option<String> {
+    let (set, [a, b]) =
+        sets.iter().enumerate().find_map(|(set, of)| Some((set, of.score.as_ref()?.first_difference?)))?;
+    Some(if sets.len() > 1 { format!("set {set}: {a}–{b}") } else { format!("{a}–{b}") })
+}
+
+fn verdicts(sets: &[SetSummary]) -> String {
+    let kinds = [
+        ("certified", Some(Verdict::Certified)),
+        ("plausible", Some(Verdict::Plausible)),
+        ("ambiguous", Some(Verdict::Ambiguous)),
+        ("without order", None),
+    ];
+    let counts = kinds.map(|(name, verdict)| (name, sets.iter().filter(|set| set.verdict == verdict).count()));
+    let some: Vec<_> = counts.iter().filter(|(_, count)| *count > 0).collect();
+    match some[..] {
+        [(name, _)] => (*name).to_owned(),
+        _ => some.iter().map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", "),
+    }
+}
