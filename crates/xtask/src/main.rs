@@ -31,9 +31,8 @@ enum Chore {
     /// Run a long test at full length and print its figures
     Soak {
         name: soak::Soak,
-        /// How many random cases, or seconds
-        #[arg(default_value_t = 1000)]
-        amount: u32,
+        /// How many random cases (else 1000), seconds (fuzz-*, else 1000; link, else 60), or minutes (load, else 10)
+        amount: Option<u32>,
     },
     /// Shuffle recordings whose order is known, have `reorder order` put them right, and print how many it did
     Score {
@@ -57,6 +56,9 @@ enum Chore {
         file: PathBuf,
         /// name:=value
         arguments: Vec<String>,
+        /// Start what was built before, without the set-up and a build
+        #[arg(long)]
+        no_build: bool,
     },
     /// Set up, then run clippy and rustdoc over the workspace with warnings as errors
     Lint,
@@ -73,7 +75,7 @@ fn main() -> ExitCode {
         Chore::Score { folder, max_n, seed } => score::run(&layout, folder.as_deref(), max_n, seed),
         Chore::Bench { area } => bench::run(&layout, &area),
         Chore::Install { prefix } => install::run(&layout, &prefix),
-        Chore::Launch { file, arguments } => launch::run(&layout, &file, &arguments),
+        Chore::Launch { file, arguments, no_build } => launch::run(&layout, &file, &arguments, !no_build),
         Chore::Lint => test::lint(&layout),
         Chore::Test => test::test(&layout),
     };
