@@ -34,7 +34,7 @@ pub use exchange::{Counters, Input, Job, Outcome, Output, RawPose};
 pub use manipulator;
 pub use message::trajectory_message;
 pub use motion::{Handover, Motion};
-pub use pipeline::{Plan, Request, plan};
+pub use pipeline::{Plan, Request, interpolate, plan};
 pub use pose_bag;
 pub use refusal::Refusal;
 pub use reorder;

@@ -99,7 +99,7 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
         return Err(not_certain_enough(ordering, config));
     }
     let distinct = ordering.distinct();
-    let spline = interpolate(poses, &distinct, config, ordering.topology)?;
+    let spline = interpolate(poses, &ordering, config.metres_per_radian)?;
 
     let at_fault = |source: ManipulatorError| Refusal::Manipulator {
         robot: robot.name.clone(),
@@ -174,10 +174,15 @@ fn not_certain_enough(ordering: Ordering, config: &Config) -> Refusal {
     }
 }
 
-fn interpolate(poses: &[Pose], distinct: &[usize], config: &Config, topology: Topology) -> Result<PoseSpline, Refusal> {
+/// The C² curve through the distinct poses in their order; the weight, in m, decides how its parameter runs.
+///
+/// # Errors
+/// [`Refusal::Spline`] where no such curve leads through them.
+pub fn interpolate(poses: &[Pose], ordering: &Ordering, metres_per_radian: f64) -> Result<PoseSpline, Refusal> {
+    let distinct = ordering.distinct();
     let ordered: Vec<Pose> = distinct.iter().map(|&i| poses[i]).collect();
-    let metric = Se3::with_metres_per_radian(config.metres_per_radian).unwrap_or_default();
-    let (ends, knots) = match topology {
+    let metric = Se3::with_metres_per_radian(metres_per_radian).unwrap_or_default();
+    let (ends, knots) = match ordering.topology {
         Topology::Open => (Ends::Natural, centripetal_knots(&metric, &ordered)),
         Topology::Closed => {
             let mut round = ordered.clone();
