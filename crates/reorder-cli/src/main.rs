@@ -1,12 +1,13 @@
-//! The `reorder` command: orders poses, and plans trajectories through them.
+//! The `reorder` command: orders poses, plans trajectories through them, and shows what came of it.
 
 mod ask;
-mod explain;
+mod drawn;
 mod failure;
 mod order;
 mod output;
 mod plan;
 mod progress;
+mod report;
 mod simulate;
 mod source;
 
@@ -27,6 +28,8 @@ enum Command {
     Order(order::Arguments),
     /// Plan an audited joint trajectory through unordered poses
     Plan(plan::Arguments),
+    /// Show points, order, plan and doubts on one self-contained HTML page
+    Report(report::Arguments),
     /// Execute a planned trajectory in MuJoCo (by the program reorder-simulate, which needs MuJoCo; see its --help)
     #[command(disable_help_flag = true)]
     Simulate(simulate::Arguments),
@@ -36,6 +39,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Order(arguments) => order::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
     };
     match result {

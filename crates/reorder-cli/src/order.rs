@@ -1,5 +1,6 @@
 //! `reorder order`.
 
+use ::report::{counted, explain};
 use clap::{Args, ValueEnum};
 use planner::reorder::{
     ComponentsChoice, EdgeFigures, MethodChoice, Options, Ordering, Repair, TopologyChoice, Verdict, Weight,
@@ -8,7 +9,6 @@ use serde::Serialize;
 use tracing::debug_span;
 
 use crate::ask::Ask;
-use crate::explain::{counted, explain};
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress::with_progress;
@@ -91,7 +91,7 @@ enum RepairChoice {
     Off,
 }
 
-fn weight(text: &str) -> Result<Weight, String> {
+pub(crate) fn weight(text: &str) -> Result<Weight, String> {
     match text {
         "auto" => Ok(Weight::Auto),
         number => number.parse().map(Weight::MetresPerRadian).map_err(|_| "neither a number nor auto".to_owned()),

@@ -50,10 +50,20 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum MinimumVerdict {
+pub(crate) enum MinimumVerdict {
     Ambiguous,
     Plausible,
     Certified,
+}
+
+impl From<MinimumVerdict> for Verdict {
+    fn from(minimum: MinimumVerdict) -> Self {
+        match minimum {
+            MinimumVerdict::Ambiguous => Self::Ambiguous,
+            MinimumVerdict::Plausible => Self::Plausible,
+            MinimumVerdict::Certified => Self::Certified,
+        }
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -100,11 +110,7 @@ fn configure(arguments: &Arguments) -> Config {
     let mut config = Config {
         topology: arguments.topology.into(),
         start: arguments.start,
-        minimum_verdict: match arguments.minimum_verdict {
-            MinimumVerdict::Ambiguous => Verdict::Ambiguous,
-            MinimumVerdict::Plausible => Verdict::Plausible,
-            MinimumVerdict::Certified => Verdict::Certified,
-        },
+        minimum_verdict: arguments.minimum_verdict.into(),
         ..Config::default()
     };
     config.metres_per_radian = arguments.metres_per_radian.unwrap_or(config.metres_per_radian);
@@ -113,7 +119,7 @@ fn configure(arguments: &Arguments) -> Config {
 }
 
 /// A shipped robot, with its own limits or others, or a robot from files.
-fn load_robot(name: &str, limits: Option<&Path>) -> Result<Robot, Failure> {
+pub(crate) fn load_robot(name: &str, limits: Option<&Path>) -> Result<Robot, Failure> {
     let read = |path: &Path| {
         fs::read_to_string(path).map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))
     };
