@@ -1,5 +1,8 @@
 // The picture: everything that stands still in a handful of draw calls, the arm, and a dot where the motion is.
 
+// Of more poses than this dots are small, lines along the tool are left out in between, and edges are not smoothed: where the processor
+// draws, all of it would take half a second a frame.
+const MANY = 2000;
 const WHISKER_PIXELS = 1;
 const WHISKER_SHARE = 0.07;
 
@@ -7,7 +10,7 @@ const buildScene = (data, timeline) => {
   const canvas = byId('stage');
   let renderer;
   try {
-    renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    renderer = new THREE.WebGLRenderer({ canvas, antialias: data.n <= MANY, powerPreference: 'high-performance' });
   } catch {
     byId('failed').hidden = false;
     byId('failed').textContent = 'This browser draws no WebGL, so that there is no picture; everything else is below.';
@@ -37,15 +40,19 @@ const buildScene = (data, timeline) => {
   const add = (layer, mesh, paint) => { layers[layer].add(mesh); coloured.push({ mesh, paint }); return mesh; };
   const perRow = () => colours(data.n, (row) => colourOf(row));
 
-  add('Poses', dots(data.places, perRow(), data.n > 1000 ? 4 : 6, 3), perRow);
+  add('Poses', dots(data.places, perRow(), data.n > MANY ? 4 : 6, 3), perRow);
   if (data.directions.length) {
-    const ends = new Float32Array(6 * data.n);
-    for (let row = 0; row < data.n; row += 1) {
+    // In the order of the curve, so that those that are left stand evenly.
+    const stride = Math.ceil(data.n / MANY);
+    const shown = data.order.filter((_, k) => k % stride === 0);
+    const ends = new Float32Array(6 * shown.length);
+    shown.forEach((row, k) => {
       const from = places[row];
       const to = new THREE.Vector3().fromArray(data.directions, 3 * row).multiplyScalar(WHISKER_SHARE * scale).add(from);
-      ends.set([from.x, from.y, from.z, to.x, to.y, to.z], 6 * row);
-    }
-    add('Poses', lines(ends, perRow(), WHISKER_PIXELS), perRow);
+      ends.set([from.x, from.y, from.z, to.x, to.y, to.z], 6 * k);
+    });
+    const tints = () => colours(shown.length, (k) => colourOf(shown[k]));
+    add('Poses', lines(ends, tints(), WHISKER_PIXELS), tints);
   }
   const { from, to } = data.edges;
   const edgeEnds = new Float32Array(6 * from.length);

@@ -21,7 +21,7 @@ const dotMaterial = (sizePixels, rank) => new THREE.ShaderMaterial({
     varying vec3 shade;
     void main() {
       shade = tint;
-      gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
       gl_Position.z -= nearer * gl_Position.w;
       gl_PointSize = size * ratio;
     }`,
@@ -46,14 +46,14 @@ const lineMaterial = (widthPixels, rank) => new THREE.ShaderMaterial({
   uniforms: { width: { value: widthPixels }, ratio: pixelRatio, viewport, nearer: { value: rank * RANK_DEPTH } },
   side: THREE.DoubleSide,
   vertexShader: `
-    attribute vec3 from, to, fromTint, toTint;
+    attribute vec3 from, to, tint;
     uniform float width, ratio, nearer;
     uniform vec2 viewport;
     varying vec3 shade;
     void main() {
-      shade = mix(fromTint, toTint, position.x);
-      vec4 a = projectionMatrix * modelViewMatrix * vec4(from, 1.0);
-      vec4 b = projectionMatrix * modelViewMatrix * vec4(to, 1.0);
+      shade = tint;
+      vec4 a = projectionMatrix * (modelViewMatrix * vec4(from, 1.0));
+      vec4 b = projectionMatrix * (modelViewMatrix * vec4(to, 1.0));
       const float near = 1e-4;
       if (a.w < near && b.w > near) a = mix(a, b, (near - a.w) / (b.w - a.w));
       if (b.w < near && a.w > near) b = mix(b, a, (near - b.w) / (a.w - b.w));
@@ -71,28 +71,48 @@ const lineMaterial = (widthPixels, rank) => new THREE.ShaderMaterial({
     void main() { gl_FragColor = vec4(shade, 1.0); }`,
 });
 
-// `ends` has six numbers a segment, `tints` three or six.
+// `ends` has six numbers a segment, `tints` three, or six for one at each end. Corners are written out rather than instanced: with four
+// of them an instance costs more than what it draws, a hundred times more where the processor draws.
+const CORNERS = [[0, -1], [1, -1], [1, 1], [0, 1]];
+
 const lines = (ends, tints, widthPixels, rank = 0) => {
   const count = ends.length / 6;
-  const geometry = new THREE.InstancedBufferGeometry();
-  geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0]), 3));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  geometry.instanceCount = count;
-  const interleaved = (array, stride, names) => {
-    const buffer = new THREE.InstancedInterleavedBuffer(array, stride);
-    names.forEach((name, k) => geometry.setAttribute(name, new THREE.InterleavedBufferAttribute(buffer, 3, (3 * k) % stride)));
-  };
-  interleaved(ends, 6, ['from', 'to']);
-  interleaved(tints, tints.length / Math.max(count, 1) || 3, ['fromTint', 'toTint']);
+  const [corners, from, to] = [0, 0, 0].map(() => new Float32Array(12 * count));
+  const index = new Uint32Array(6 * count);
+  for (let k = 0; k < count; k += 1) {
+    CORNERS.forEach((corner, c) => {
+      const at = 12 * k + 3 * c;
+      corners.set(corner, at);
+      from.set(ends.subarray(6 * k, 6 * k + 3), at);
+      to.set(ends.subarray(6 * k + 3, 6 * k + 6), at);
+    });
+    index.set([0, 1, 2, 0, 2, 3].map((c) => 4 * k + c), 6 * k);
+  }
+  const geometry = new THREE.BufferGeometry();
+  for (const [name, values] of Object.entries({ position: corners, from, to, tint: atCorners(tints, count) })) {
+    geometry.setAttribute(name, new THREE.BufferAttribute(values, 3));
+  }
+  geometry.setIndex(new THREE.BufferAttribute(index, 1));
   const mesh = new THREE.Mesh(geometry, lineMaterial(widthPixels, rank));
   // Its positions are corners of a rectangle, and say nothing about where it is.
   mesh.frustumCulled = false;
   return mesh;
 };
 
-const setTints = (mesh, tints) => {
-  const { tint, fromTint } = mesh.geometry.attributes;
-  const target = tint || fromTint.data;
-  target.array.set(tints);
-  target.needsUpdate = true;
+const atCorners = (tints, count) => {
+  const stride = count ? tints.length / count : 3;
+  const values = new Float32Array(12 * count);
+  for (let k = 0; k < count; k += 1) {
+    CORNERS.forEach(([end], c) => {
+      const at = stride * k + (stride === 6 ? 3 * end : 0);
+      values.set(tints.subarray(at, at + 3), 12 * k + 3 * c);
+    });
+  }
+  return values;
+};
+
+const setTints = ({ geometry, isMesh }, tints) => {
+  const { tint, from } = geometry.attributes;
+  tint.array.set(isMesh ? atCorners(tints, from.count / 4) : tints);
+  tint.needsUpdate = true;
 };

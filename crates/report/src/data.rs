@@ -13,8 +13,8 @@ use crate::report::Report;
 use crate::simulation::Followed;
 use crate::words::{Statement, certificate, shape, statement};
 
-/// Points on the drawn spline, together and between two poses at most.
-const SPLINE_POINTS: usize = 20_000;
+/// Points on the drawn spline, together and between two poses at most; of more poses than that there is one at each.
+const SPLINE_POINTS: usize = 10_000;
 const SPLINE_POINTS_PER_SEGMENT: usize = 12;
 
 #[derive(Debug, Serialize)]
@@ -111,7 +111,7 @@ impl Spline {
     fn of(spline: &PoseSpline) -> Self {
         let knots = spline.knots();
         let segments = knots.len().saturating_sub(1).max(1);
-        let parts = (SPLINE_POINTS / segments).clamp(2, SPLINE_POINTS_PER_SEGMENT);
+        let parts = (SPLINE_POINTS / segments).clamp(1, SPLINE_POINTS_PER_SEGMENT);
         let part = |k: usize| k as f64 / parts as f64;
         let inner = knots.windows(2).enumerate().flat_map(|(segment, pair)| {
             let (from, to) = (pair[0], pair[1]);
