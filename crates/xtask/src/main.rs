@@ -1,6 +1,7 @@
 //! Every chore of the project, as `cargo xtask CHORE`.
 
 mod bench;
+mod browser;
 mod demo;
 mod env;
 mod failure;
@@ -24,7 +25,7 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 enum Chore {
-    /// Put ROS 2, MuJoCo and Python packages into .deps (idempotent, resumable)
+    /// Put ROS 2, MuJoCo, Python packages, three.js and a browser to test with into .deps (idempotent, resumable)
     Setup,
     /// Set up, build, and run the main job for real: recorded poses, ROS 2, the node, MuJoCo
     Demo,
@@ -69,7 +70,7 @@ enum Chore {
 fn main() -> ExitCode {
     let layout = env::Layout::of_this_checkout();
     let outcome = match Chore::parse() {
-        Chore::Setup => setup::run(&layout),
+        Chore::Setup => setup::run_for_tests(&layout),
         Chore::Demo => demo::run(&layout),
         Chore::Soak { name, amount } => soak::run(&layout, name, amount),
         Chore::Score { folder, max_n, seed } => score::run(&layout, folder.as_deref(), max_n, seed),
