@@ -47,7 +47,7 @@ def converse(node):
     check(time.monotonic() - asked < ANSWER_S, "The answer took too long.")
     health.reach("execution", ERROR, "nobody serves the action")
     answer = call(node, Trigger, "/reorder/cancel", Trigger.Request())
-    check(not answer.success and "no trajectory is under way" in answer.message, f"{answer}")
+    check(not answer.success and "does not give the trajectory up" in answer.message, f"{answer}")
 
 
 def be_killed():

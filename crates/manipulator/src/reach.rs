@@ -62,8 +62,10 @@ const SHOWN_RUNS: usize = 4;
 fn in_words(runs: &[(usize, usize)]) -> String {
     let run = |&(from, to): &(usize, usize)| if from == to { format!("{from}") } else { format!("{from} to {to}") };
     let mut words: Vec<String> = runs.iter().take(SHOWN_RUNS).map(run).collect();
-    if runs.len() > SHOWN_RUNS {
-        words.push(format!("{} more runs", runs.len() - SHOWN_RUNS));
+    match runs.len().saturating_sub(SHOWN_RUNS) {
+        0 => {}
+        1 => words.push("one more run".into()),
+        more => words.push(format!("{more} more runs")),
     }
     let one = matches!(runs, [(from, to)] if from == to);
     let last = words.pop().unwrap_or_default();

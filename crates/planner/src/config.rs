@@ -10,7 +10,7 @@ use crate::refusal::Refusal;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// A [`Session`](crate::Session) refuses more poses than this at a time, so that an answer does not take hours.
+    /// More poses than this at a time are refused, so that an answer does not take hours; without bound by default.
     pub max_poses: usize,
     /// How many metres count as much as one radian when poses are compared. Changes the order, so it is reported.
     pub metres_per_radian: f64,
@@ -58,7 +58,7 @@ pub enum OnRefusal {
 impl Default for Config {
     fn default() -> Self {
         Self {
-            max_poses: 10_000,
+            max_poses: usize::MAX,
             metres_per_radian: 0.1,
             topology: TopologyChoice::Auto,
             start: None,

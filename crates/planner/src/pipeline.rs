@@ -97,8 +97,11 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
     if request.handover.is_some() && !config.approach {
         return Err(Refusal::Config("approach is off, so that no trajectory can take over from a running one".into()));
     }
-    let start = start_state(robot, request)?;
     let poses = &request.poses;
+    if poses.len() > config.max_poses {
+        return Err(Refusal::TooManyPoses { given: poses.len(), allowed: config.max_poses });
+    }
+    let start = start_state(robot, request)?;
     let ordering = order_from(robot, config, poses, start.as_ref())?;
     if ordering.verdict < config.minimum_verdict {
         return Err(not_certain_enough(ordering, config));

@@ -131,6 +131,7 @@ impl Session {
     /// Takes new poses, or refuses them as a whole. Refused poses also displace the ones before: what was asked for last must
     /// not be answered with a motion through something older.
     fn poses(&mut self, now_s: f64, frame_id: String, stamp_ns: i64, raw: &[RawPose]) -> Vec<Output> {
+        let in_vain = self.counters.in_vain;
         self.receive();
         if raw.len() > self.config.max_poses {
             let refusal = Refusal::TooManyPoses { given: raw.len(), allowed: self.config.max_poses };
@@ -144,8 +145,11 @@ impl Session {
             Ok(poses) => {
                 let request = Request { frame_id, stamp_ns, poses, ..Request::default() };
                 let same = |last: &Request| last.frame_id == request.frame_id && last.poses == request.poses;
-                if self.running && !self.waiting && self.last.as_ref().is_some_and(same) {
-                    // A publisher that repeats itself asks for nothing new, and must not keep its own plan from ending.
+                if let Some(last) = self.last.as_mut().filter(|last| self.running && !self.waiting && same(last)) {
+                    // A publisher that repeats itself asks for nothing new, and must not keep its own plan from ending, which answers this
+                    // message too.
+                    last.stamp_ns = stamp_ns;
+                    self.counters.in_vain = in_vain;
                     return Vec::new();
                 }
                 self.last = Some(request);
@@ -268,7 +272,9 @@ impl Session {
         self.running = false;
         let mut outputs = Vec::new();
         if outcome.generation == self.generation {
-            let Outcome { request, result, .. } = *outcome;
+            let Outcome { mut request, result, .. } = *outcome;
+            // The same poses may have come again meanwhile.
+            request.stamp_ns = self.last.as_ref().map_or(request.stamp_ns, |last| last.stamp_ns);
             match result.and_then(|plan| Ok((self.take_over(now_s, &request, &plan)?, plan))) {
                 Ok((Some(motion), plan)) => {
                     self.counters.planned += 1;

@@ -42,33 +42,52 @@ pub(crate) fn trajectory_csv(trajectory: &JointTrajectory) -> Result<String, Fai
     Ok(text)
 }
 
-/// Text beside its destination, to be moved there when all that belongs with it is complete; dropped, it leaves nothing.
+/// Text beside its destination, to be moved there when all that belongs with it is complete; dropped, it leaves nothing. What is no file,
+/// a device or a pipe, gets the text itself, and is not replaced by one.
 pub(crate) struct Pending<'a> {
-    file: tempfile::NamedTempFile,
+    content: Content,
     path: &'a Path,
+}
+
+enum Content {
+    /// With the place where it goes, which a link may name.
+    File(tempfile::NamedTempFile, PathBuf),
+    Text(String),
 }
 
 impl<'a> Pending<'a> {
     pub(crate) fn write(path: &'a Path, text: &str) -> Result<Self, Failure> {
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         // Readable by others as far as the umask allows, as any other file would be.
         let readable = std::fs::Permissions::from_mode(0o666);
         let write = || -> std::io::Result<_> {
+            let place = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+            if place.is_dir() {
+                return Err(ErrorKind::IsADirectory.into());
+            }
+            if place.exists() && !place.is_file() {
+                return Ok(Content::Text(text.to_owned()));
+            }
+            let folder = place.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
             let mut file = tempfile::Builder::new().permissions(readable).tempfile_in(folder)?;
             file.write_all(text.as_bytes())?;
-            Ok(file)
+            Ok(Content::File(file, place))
         };
-        // A folder in its place would be noticed only when it is too late.
-        let file = if path.is_dir() { Err(ErrorKind::IsADirectory.into()) } else { write() };
-        Ok(Self { file: file.map_err(|error| unwritten(path, &error))?, path })
+        Ok(Self { content: write().map_err(|error| unwritten(path, &error))?, path })
     }
 
     pub(crate) fn appear(self) -> Result<(), Failure> {
-        self.file.persist(self.path).map(drop).map_err(|error| unwritten(self.path, &error.error))
+        match self.content {
+            Content::File(file, place) => file.persist(place).map(drop).map_err(|error| error.error),
+            Content::Text(text) => std::fs::OpenOptions::new()
+                .write(true)
+                .open(self.path)
+                .and_then(|mut file| file.write_all(text.as_bytes())),
+        }
+        .map_err(|error| unwritten(self.path, &error))
     }
 }
 
-/// No result may take the place of what it is made from, or of another result.
+/// No result may take the place of what it is made from, nor of a file in a folder that is, or of another result.
 pub(crate) fn spare<'a>(
     inputs: impl Iterator<Item = &'a Path>,
     outputs: impl Iterator<Item = &'a Path>,
@@ -78,7 +97,7 @@ pub(crate) fn spare<'a>(
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let in_folder = || Ok(folder.canonicalize()?.join(path.file_name().unwrap_or_default()));
         let place = path.canonicalize().or_else(|_| in_folder()).map_err(|error| unwritten(path, &error))?;
-        if taken.contains(&place) {
+        if taken.iter().any(|taken| place.starts_with(taken)) {
             let path = path.display();
             return Err(Failure::BadInput(format!("{path}: already an input or another output of this command")));
         }

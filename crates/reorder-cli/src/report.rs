@@ -67,7 +67,8 @@ struct Found {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let files = [&arguments.limits, &arguments.simulation, &arguments.drawing_library].into_iter();
-    let inputs = files.filter_map(|path| path.as_deref()).chain([arguments.source.input.as_path()]);
+    let urdf = arguments.robot.as_deref().map(Path::new);
+    let inputs = files.filter_map(|path| path.as_deref()).chain(urdf).chain([arguments.source.input.as_path()]);
     spare(inputs, [arguments.output.as_path()].into_iter())?;
     let library = library(arguments.drawing_library.as_deref())?;
     let simulation = arguments.simulation.as_deref().map(simulation).transpose()?;

@@ -94,6 +94,23 @@ fn outputs_spare_inputs_and_each_other() {
         assert_eq!(std::fs::read_to_string(&poses).unwrap(), table);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "nothing half-written stays");
     }
+    // A link names a file, which gets the text; a device is none, and stays one.
+    let link = folder.path().join("link.csv");
+    std::os::unix::fs::symlink(&old, &link).unwrap();
+    out(&reorder(&[&plan[..], &["-o", link.to_str().unwrap(), "--report", "/dev/null"]].concat()));
+    assert!(link.is_symlink() && std::fs::read_to_string(&old).unwrap().starts_with("t,"));
+    assert!(!std::fs::metadata("/dev/null").unwrap().is_file());
+    // The files of a bag are the bag.
+    let copy = folder.path().join("lasa_sine");
+    std::fs::create_dir(&copy).unwrap();
+    for file in std::fs::read_dir(&bag).unwrap().flatten() {
+        std::fs::copy(file.path(), copy.join(file.file_name())).unwrap();
+    }
+    let recording = copy.join("lasa_sine.mcap");
+    let before = std::fs::read(&recording).unwrap();
+    let over = recording.to_str().unwrap();
+    let (code, said) = refusal(&["plan", copy.to_str().unwrap(), "--robot", "ur5e", "-o", over]);
+    assert!(code == 2 && said.contains(twice) && std::fs::read(&recording).unwrap() == before, "{said}");
 }
 
 #[test]
@@ -129,6 +146,9 @@ fn a_plan_is_configured_by_a_file_that_options_precede() {
     assert!((slow[1] - 0.02).abs() < 1e-9 && (fine[1] - 0.005).abs() < 1e-9);
     assert!((slow[slow.len() - 1] - fine[fine.len() - 1]).abs() < 0.1);
     assert!(slow[slow.len() - 1] > 2.0 * free as f64 / 100.0, "the speed is not kept low");
+    let few = file(&folder, "few.yaml", "max_poses: 3\n");
+    let (code, said) = refusal(&["plan", &bag, "--robot", "ur5e", "--config", &few]);
+    assert!(code == 2 && said.contains("are more than the 3"), "{said}");
     let wrong = file(&folder, "wrong.yaml", "timing: {tool_speed: 1.0}\n");
     let (code, said) = refusal(&["plan", &bag, "--robot", "ur5e", "--config", &wrong]);
     assert!(code == 2 && said.contains("wrong.yaml") && said.contains("tool_speed"), "{said}");

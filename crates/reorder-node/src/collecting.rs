@@ -28,11 +28,14 @@ pub(crate) enum Taken {
     Corrected,
     /// It is in another frame than those before, which no set can be.
     OtherFrame,
+    /// There are more already than a set may have. Nothing says where another set would begin: all are ignored until none comes for a while.
+    TooMany,
 }
 
 impl Collecting {
     /// Takes a pose; stamps may come in any order, and one of zero says nothing.
-    pub(crate) fn take(&mut self, at: Instant, message: PoseStamped) -> Taken {
+    /// One pose more than `most` is kept, so that the set is refused as too large.
+    pub(crate) fn take(&mut self, at: Instant, message: PoseStamped, most: usize) -> Taken {
         let PoseStamped { header, pose } = message;
         if !self.poses.is_empty() && header.frame_id != self.header.frame_id {
             return Taken::OtherFrame;
@@ -42,12 +45,14 @@ impl Collecting {
         if self.poses.is_empty() || stamp > stamp_ns(&self.header.stamp) {
             self.header = header;
         }
+        let is_full = self.poses.len() > most;
         match self.poses.iter_mut().rfind(|(known, _)| *known == stamp && stamp != 0) {
             Some((_, known)) if *known == pose => Taken::Repeated,
             Some((_, known)) => {
                 *known = pose;
                 Taken::Corrected
             }
+            None if is_full => Taken::TooMany,
             None => {
                 self.poses.push((stamp, pose));
                 Taken::Added
@@ -97,13 +102,26 @@ mod tests {
             (pose("base", 0, 1.0), Taken::Added),
             (pose("base", 0, 1.0), Taken::Added),
         ] {
-            assert_eq!(set.take(now, message), taken);
+            assert_eq!(set.take(now, message, 10), taken);
         }
         assert_eq!((set.len(), set.deadline(0.0)), (4, None));
         assert_eq!(set.deadline(2.0), Some(now + Duration::from_secs(2)));
         let (_, array) = set.finish().unwrap();
         assert_eq!(array.poses.iter().map(|pose| pose.position.x).collect::<Vec<_>>(), [0.5, 0.4, 1.0, 1.0]);
         assert_eq!((array.header.frame_id.as_str(), stamp_ns(&array.header.stamp)), ("base", 5));
-        assert_eq!((set.len(), set.take(now, pose("tool", 1, 0.0))), (0, Taken::Added));
+        assert_eq!((set.len(), set.take(now, pose("tool", 1, 0.0), 10)), (0, Taken::Added));
+    }
+
+    /// What comes after a set that is too large belongs to it: it must not become a set, and a motion, of its own.
+    #[test]
+    fn the_tail_of_a_set_that_is_too_large_is_no_set() {
+        let (mut set, start) = (Collecting::default(), Instant::now());
+        let at = |k: i64| start + Duration::from_millis(k as u64);
+        let taken: Vec<Taken> = (1..=9).map(|k| set.take(at(k), pose("base", k, 0.1 * k as f64), 3)).collect();
+        assert!(taken[..4].iter().all(|t| *t == Taken::Added) && taken[4..].iter().all(|t| *t == Taken::TooMany));
+        // It is waited for until the last of them was quiet, and still refused as one of more than three.
+        assert_eq!(set.deadline(1.0), Some(at(9) + Duration::from_secs(1)));
+        assert_eq!(set.finish().unwrap().1.poses.len(), 4);
+        assert!(set.finish().is_none());
     }
 }

@@ -90,7 +90,7 @@ const buildScene = (data, timeline) => {
   }
   const light = new THREE.DirectionalLight(0xffffff, 1.6);
   scene.add(new THREE.HemisphereLight(0xffffff, 0x8d8a84, 1.9), light);
-  const grid = ground(whole, arm ? 0 : Math.min(...places.map((p) => p.z)));
+  const grid = ground(whole, arm ? 0 : places.reduce((least, p) => Math.min(least, p.z), Infinity));
   scene.add(grid.mesh);
 
   const seenFrom = () => {

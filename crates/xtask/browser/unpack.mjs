@@ -20,6 +20,6 @@ for (const archive of ['al2023.tar', 'swiftshader.tar', 'fonts.tar']) {
 // With that font alone, so that pictures are the same on every machine.
 writeFileSync('chromium/fonts.conf', `<?xml version="1.0"?>
 <!DOCTYPE fontconfig SYSTEM "fonts.dtd">
-<fontconfig><dir prefix="relative">fonts</dir><cachedir prefix="relative">fonts-cache</cachedir></fontconfig>
+<fontconfig><dir prefix="relative">fonts</dir><cachedir>${process.cwd()}/chromium/fonts-cache</cachedir></fontconfig>
 `);
 rmSync('node_modules/@sparticuz', { recursive: true });

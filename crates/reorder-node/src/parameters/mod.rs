@@ -48,7 +48,8 @@ pub(crate) enum Execution {
 impl Default for Parameters {
     fn default() -> Self {
         Self {
-            config: Config::default(),
+            // A source that is wrong must not keep the node from all others.
+            config: Config { max_poses: 10_000, ..Config::default() },
             robot: RobotSource::default(),
             use_sim_time: false,
             autostart: true,

@@ -32,7 +32,11 @@ impl Shell {
             What::NotSent(why) => fail(progress, format!("the trajectory was not sent: {why}")),
             What::Rejected => fail(progress, "the controller rejected the trajectory".into()),
             What::Ended(end) => {
-                (self.goal.1, progress.level) = (None, Level::Ok);
+                progress.level = Level::Ok;
+                // A controller that is out of sight may still move the arm: once it is back, the goal can be cancelled.
+                if !matches!(end, End::Lost(_)) {
+                    self.goal.1 = None;
+                }
                 match end {
                     End::Succeeded => progress.message = "the trajectory was executed".into(),
                     End::Canceled => progress.message = "the trajectory was cancelled".into(),

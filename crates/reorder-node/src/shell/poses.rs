@@ -26,10 +26,13 @@ impl Shell {
     /// Takes one pose of a set.
     pub(super) fn collect(&mut self, at: Instant, message: PoseStamped) {
         let frame = message.header.frame_id.clone();
-        match self.collecting.take(at, message) {
-            // A source that never falls quiet would fill the memory: the set is refused as too large, and the next begins.
-            Taken::Added if self.collecting.len() > self.parameters.config.max_poses => self.finish_collecting(),
+        let most = self.parameters.config.max_poses;
+        match self.collecting.take(at, message, most) {
+            Taken::Added if self.collecting.len() > most => self.log.warn(format!(
+                "more than {most} poses came without a pause: further ones are ignored, and all are refused when it is quiet (max_poses)"
+            )),
             Taken::Added => {}
+            Taken::TooMany => self.odd_poses.refused += 1,
             Taken::Repeated => self.odd_poses.repeated += 1,
             Taken::Corrected => self.odd_poses.corrected += 1,
             Taken::OtherFrame => {
