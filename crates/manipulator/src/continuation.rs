@@ -63,7 +63,7 @@ impl Tracker<'_> {
     /// The pose that was not reached is the one after the last sample, also where that sample is a pose itself; only of the
     /// first pose nothing comes before.
     pub(crate) fn stopped(&self, parameter: f64, error: ManipulatorError) -> Stopped {
-        let first = parameter <= self.curve.domain().0 && error.pose() == Some(0);
+        let first = parameter <= self.curve.domain().0 && error.poses() == [0];
         let past = if first { parameter } else { parameter + f64::EPSILON * parameter.abs().max(1.0) };
         Stopped { parameter, pose: self.pose_after(past), error }
     }

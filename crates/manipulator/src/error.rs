@@ -44,6 +44,12 @@ pub enum ManipulatorError {
     /// A chain of no joints.
     #[error("nothing moves the tool: a chain needs at least one joint")]
     NoJoints,
+    /// A pose has six coordinates, and an arm with fewer joints reaches the poses of a surface at most.
+    #[error("the arm has {joints} moving joints, and following a curve of poses takes six")]
+    TooFewJoints {
+        /// Joints of the chain.
+        joints: usize,
+    },
     /// A joint on the chain is of a kind that a serial chain of single axes cannot have.
     #[error("joint {joint:?} is {kind}: only revolute, continuous, prismatic and fixed joints are supported")]
     UnsupportedJoint {

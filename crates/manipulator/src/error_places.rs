@@ -4,17 +4,17 @@ use crate::error::ManipulatorError;
 use crate::reach::OutOfReach;
 
 impl ManipulatorError {
-    /// Index, along the curve, of the pose that the error is about.
-    pub fn pose(&self) -> Option<usize> {
+    /// Indices, along the curve, of the poses that the error is about.
+    pub fn poses(&self) -> Vec<usize> {
         match self {
-            Self::Unreachable(OutOfReach { misses, .. }) => misses.first().map(|miss| miss.pose),
+            Self::Unreachable(OutOfReach { misses, .. }) => misses.iter().map(|miss| miss.pose).collect(),
             Self::UnreachableBetween { pose, .. }
             | Self::JointLimit { pose, .. }
             | Self::Singular { pose, .. }
             | Self::Jump { pose, .. }
-            | Self::PathTolerance { pose, .. } => Some(*pose),
-            Self::HoldingTorque { pose, .. } | Self::ConstantSpeed { pose, .. } => *pose,
-            _ => None,
+            | Self::PathTolerance { pose, .. } => vec![*pose],
+            Self::HoldingTorque { pose, .. } | Self::ConstantSpeed { pose, .. } => pose.iter().copied().collect(),
+            _ => Vec::new(),
         }
     }
 

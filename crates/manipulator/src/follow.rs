@@ -85,7 +85,7 @@ const STANDS_THERE: f64 = 1e-3;
 /// On a closed curve the joints end where they began with the same rates, joints that turn freely perhaps by whole turns apart.
 ///
 /// # Errors
-/// [`ManipulatorError::Unreachable`] where some poses are out of reach; else the reason of the attempt that came farthest:
+/// [`ManipulatorError::TooFewJoints`] for an arm with fewer than six; [`ManipulatorError::Unreachable`] where some poses are out of reach; else the reason of the attempt that came farthest:
 /// [`ManipulatorError::UnreachableBetween`], [`ManipulatorError::JointLimit`], [`ManipulatorError::Singular`], [`ManipulatorError::Jump`],
 /// [`ManipulatorError::PathTolerance`] or [`ManipulatorError::NotCyclic`], with the index of the pose.
 pub fn follow(
@@ -95,6 +95,9 @@ pub fn follow(
     options: &PathOptions,
 ) -> Result<JointPath> {
     options.check()?;
+    if robot.chain.dof() < 6 {
+        return Err(ManipulatorError::TooFewJoints { joints: robot.chain.dof() });
+    }
     let reference = start.unwrap_or(&robot.preferred);
     robot.check_configuration("the start configuration", reference)?;
     robot.check_configuration("the preferred configuration", &robot.preferred)?;

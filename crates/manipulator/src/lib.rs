@@ -30,6 +30,7 @@
 //! # Ok(()) }
 //! ```
 
+mod arc_length;
 mod audit;
 mod bounds;
 mod branches;

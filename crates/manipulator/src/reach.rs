@@ -92,32 +92,46 @@ impl fmt::Display for OutOfReach {
     }
 }
 
-/// Seeds for a pose that was not reached from its neighbour, and for one whose neighbour was not reached either.
-const SEEDS: [usize; 2] = [32, 6];
+/// Seeds for a pose that was not reached from its neighbour.
+const SEEDS: usize = 32;
 /// Descents after which a pose is tried from its neighbour only, so that very many poses take bounded time.
 const MOST_DESCENTS: usize = 20_000;
 
-/// Poses of `curve` that are not reached within the joint limits from many seeds; `None` where all are.
+/// Poses of `curve` that are not reached within the joint limits, neither from many seeds nor from the configuration found for the pose
+/// before or after; `None` where all are.
 pub(crate) fn out_of_reach(robot: &Robot, curve: &PoseSpline, seed: &DVector<f64>) -> Option<OutOfReach> {
     let knots = curve.knots();
     let poses = knots.len() - usize::from(curve.is_closed());
     let mut near = seed.clone();
-    let (mut descents, mut lost) = (0, false);
-    let mut misses = Vec::new();
+    let mut descents = 0;
+    let mut misses: Vec<(PoseMiss, Option<DVector<f64>>)> = Vec::new();
     for (pose, &s) in knots[..poses].iter().enumerate() {
-        let seeds = if descents > MOST_DESCENTS { 0 } else { SEEDS[usize::from(lost)] };
-        let result = reached(robot, &curve.pose(s), &near, seeds, &mut descents);
-        lost = result.is_err();
-        near = match result {
-            Ok(q) => q,
+        let seeds = if descents > MOST_DESCENTS { 0 } else { SEEDS };
+        near = match reached(robot, &curve.pose(s), &near, seeds, &mut descents) {
+            Ok(q) => {
+                // The way back into a run of misses begins here.
+                if let Some((_, after)) = misses.last_mut().filter(|(last, _)| last.pose + 1 == pose) {
+                    *after = Some(q.clone());
+                }
+                q
+            }
             Err(Miss { q, error }) => {
                 let (position_error_m, rotation_error_rad) = (error.position_m, error.rotation_rad);
-                misses.push(PoseMiss { pose, position_error_m, rotation_error_rad });
+                misses.push((PoseMiss { pose, position_error_m, rotation_error_rad }, None));
                 q
             }
         };
     }
-    (!misses.is_empty()).then_some(OutOfReach { misses, poses })
+    let mut near = None;
+    let mut missed = Vec::new();
+    for (miss, after) in misses.into_iter().rev() {
+        near = after.or(near).and_then(|q| reached(robot, &curve.pose(knots[miss.pose]), &q, 0, &mut descents).ok());
+        if near.is_none() {
+            missed.push(miss);
+        }
+    }
+    missed.reverse();
+    (!missed.is_empty()).then_some(OutOfReach { misses: missed, poses })
 }
 
 fn reached(

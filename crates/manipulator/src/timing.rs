@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::arc_length::at_constant_speed;
 use crate::audit::{Audit, Found, against, audit_under};
 use crate::bounds::Bounds;
 use crate::constant_speed;
@@ -82,12 +83,20 @@ pub fn time_path(robot: &Robot, path: &JointPath, options: &TimingOptions) -> Re
             other => other?,
         }
     };
-    let (trajectory, audit) = match legal {
+    let (mut trajectory, mut audit) = match legal {
         Some(legal) => legal,
         None => slowed_until_legal(path, &profile, duration, &bounds, &sampling)?,
     };
+    let mut profile = profile;
     if let Some(wanted) = options.constant_tool_speed_m_s {
-        constant_speed::check(&bounds, path, &profile, &trajectory, wanted)?;
+        let check = |profile: &Smoothed, trajectory: &JointTrajectory| {
+            constant_speed::check(&bounds, path, profile, trajectory, wanted)
+        };
+        if let Err(not_held) = check(&profile, &trajectory) {
+            let held = at_constant_speed(path, &bounds, &sampling, wanted);
+            let held = held.filter(|(profile, trajectory, _)| check(profile, trajectory).is_ok());
+            (profile, trajectory, audit) = held.ok_or(not_held)?;
+        }
     }
     let stretch = trajectory.duration_s() / profile.duration();
     let knot_times_s = path.pose_parameters().iter().map(|&s| profile.time_at(s) * stretch).collect();

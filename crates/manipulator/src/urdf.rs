@@ -1,6 +1,6 @@
 //! From a URDF to a chain and the limits that the URDF states.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix3, Translation3, UnitQuaternion, Vector3};
 use se3_geom::{Pose, Twist};
@@ -22,7 +22,21 @@ pub(crate) struct UrdfLimits {
 }
 
 pub(crate) fn parse(urdf: &str) -> Result<urdf_rs::Robot> {
-    urdf_rs::read_from_string(urdf).map_err(|error| ManipulatorError::Urdf { reason: one_line(&error.to_string()) })
+    let refused = |reason| ManipulatorError::Urdf { reason };
+    let robot = urdf_rs::read_from_string(urdf).map_err(|error| refused(one_line(&error.to_string())))?;
+    let links: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
+    let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+    for (what, names) in [("links", links), ("joints", joints)] {
+        if let Some(name) = first_twice(names) {
+            return Err(refused(format!("two {what} are named {name:?}")));
+        }
+    }
+    Ok(robot)
+}
+
+fn first_twice(names: Vec<&str>) -> Option<&str> {
+    let mut known = BTreeSet::new();
+    names.into_iter().find(|name| !known.insert(*name))
 }
 
 pub(crate) fn one_line(text: &str) -> String {
@@ -88,6 +102,11 @@ pub(crate) fn carried(robot: &urdf_rs::Robot, base: &str, tool: &str) -> Result<
         .filter(|joint| joint.joint_type != JointType::Fixed)
         .map(|joint| joint.name.as_str())
         .collect();
+    let links: BTreeMap<&str, &urdf_rs::Link> = robot.links.iter().map(|link| (link.name.as_str(), link)).collect();
+    let mut below: BTreeMap<&str, Vec<&Joint>> = BTreeMap::new();
+    for joint in &robot.joints {
+        below.entry(&joint.parent.link).or_default().push(joint);
+    }
     let mut carried = vec![Inertia::default(); moving.len()];
     let mut ahead = vec![(base, Pose::identity(), None)];
     let mut links_left = robot.links.len();
@@ -96,11 +115,11 @@ pub(crate) fn carried(robot: &urdf_rs::Robot, base: &str, tool: &str) -> Result<
         links_left = links_left
             .checked_sub(1)
             .ok_or_else(|| ManipulatorError::NoChain { base: base.into(), tool: tool.into() })?;
-        if let (Some(joint), Some(link)) = (carrier, robot.links.iter().find(|link| link.name == name)) {
+        if let (Some(joint), Some(link)) = (carrier, links.get(name)) {
             let own: usize = joint;
             carried[own] = carried[own] + inertia(link)?.in_parent(&base_from_link);
         }
-        for joint in robot.joints.iter().filter(|joint| joint.parent.link == name) {
+        for joint in below.get(name).into_iter().flatten() {
             let place = moving.iter().position(|name| *name == joint.name);
             ahead.push((&joint.child.link, base_from_link * origin(joint)?, place.or(carrier)));
         }

@@ -11,7 +11,7 @@ use manipulator::{
 };
 use se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, Twist, centripetal_knots, pose_from_xyzw};
 use support::curves::{spline, writing};
-use support::{Random, mounted_ur5e, random_configuration, ur5e};
+use support::{Random, configuration_within, mounted_ur5e, random_configuration, ur5e};
 
 fn off(a: &Pose, b: &Pose) -> (f64, f64) {
     ((a.translation.vector - b.translation.vector).norm(), So3.distance(&a.rotation, &b.rotation))
@@ -199,6 +199,26 @@ fn the_pose_out_of_reach_is_named() {
     first_is_far[0].translation.vector.z += 2.0;
     let error = follow(&robot, &spline(&first_is_far), None, &PathOptions::default()).unwrap_err();
     assert!(matches!(&error, ManipulatorError::Unreachable(out) if out.reachable() == [(1, 4)]), "{error}");
+}
+
+/// Where the joints of an arm lead, the arm can reach: of curves that leave its reach in the middle only what is outside is named.
+#[test]
+fn no_pose_that_joints_lead_to_is_called_out_of_reach() {
+    let mut random = Random(12);
+    for name in ["vx300s", "panda", "ur5e"] {
+        let robot = Robot::shipped(name).unwrap();
+        for _ in 0..8 {
+            let [from, to] = [(); 2].map(|()| configuration_within(&robot, 0.95, &mut random));
+            let mut poses: Vec<Pose> =
+                (0..30).map(|k| robot.chain.forward(&from.lerp(&to, f64::from(k) / 29.0))).collect();
+            for pose in &mut poses[8..16] {
+                pose.translation.vector.x += 3.0;
+            }
+            let error = follow(&robot, &spline(&poses), None, &PathOptions::default()).unwrap_err();
+            let ManipulatorError::Unreachable(out) = &error else { panic!("{error}") };
+            assert_eq!(out.reachable(), [(0, 7), (16, 29)], "{name}: {error}");
+        }
+    }
 }
 
 /// With the second wrist joint at zero the axes of the first and the third are parallel.

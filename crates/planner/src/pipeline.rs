@@ -108,7 +108,7 @@ pub fn plan(robot: &Robot, config: &Config, request: &Request) -> Result<Plan, R
 
     let at_fault = |source: ManipulatorError| Refusal::Manipulator {
         robot: robot.name.clone(),
-        input_pose: source.pose().map(|knot| distinct[knot % distinct.len()]),
+        input_poses: source.poses().into_iter().map(|knot| distinct[knot % distinct.len()]).collect(),
         source: Box::new(source),
     };
     let path = follow(robot, &spline, start.as_ref(), &config.path).map_err(at_fault)?;

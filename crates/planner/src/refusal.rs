@@ -110,14 +110,14 @@ pub enum Refusal {
         near: Vec<usize>,
     },
     /// The arm cannot follow the curve, or not within its limits.
-    #[error("{robot}: {source}{}", input_pose.map(|i| format!(" (input pose {i})")).unwrap_or_default())]
+    #[error("{robot}: {source}{}", in_the_input(input_poses))]
     Manipulator {
         /// Name of the robot.
         robot: String,
         /// What went wrong, with places along the order.
         source: Box<ManipulatorError>,
-        /// Input index of the pose concerned.
-        input_pose: Option<usize>,
+        /// Input indices of the poses concerned, in the order in which `source` counts them.
+        input_poses: Vec<usize>,
     },
     /// The robot stands elsewhere than the trajectory begins, and may not be led there.
     #[error("{joint} stands {away:.4} rad (or m) from the first pose, and approach is off")]
@@ -159,6 +159,20 @@ pub enum Refusal {
         /// What it was to keep.
         rules: AuditRules,
     },
+}
+
+/// Poses that are spelled out.
+const SHOWN_POSES: usize = 12;
+
+/// Which rows of the input a sentence speaks of that counts poses along the curve.
+fn in_the_input(poses: &[usize]) -> String {
+    let shown: Vec<_> = poses.iter().take(SHOWN_POSES).map(ToString::to_string).collect();
+    let more = if poses.len() > SHOWN_POSES { ", …" } else { "" };
+    match &shown[..] {
+        [] => String::new(),
+        [pose] => format!(" (input pose {pose})"),
+        _ => format!(" (counted along the recovered order; input poses {}{more})", shown.join(", ")),
+    }
 }
 
 impl Refusal {

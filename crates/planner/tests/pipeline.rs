@@ -75,6 +75,29 @@ fn every_pose_is_passed_in_the_true_order() {
     }
 }
 
+/// Points drawn by hand are unevenly apart, so that the tool's speed along the curve's parameter is uneven too, from point to point.
+#[test]
+fn the_tool_keeps_a_constant_speed_along_handwriting() {
+    const SPEED: f64 = 0.03;
+    for name in ["lasa_angle", "lasa_gshape"] {
+        let mut config = Config::default();
+        config.timing.constant_tool_speed_m_s = Some(SPEED);
+        let found = plan(&robot(), &config, &request(&recording(name), None)).unwrap();
+        assert!(found.audit.limits_ok);
+        let (duration, step) = (found.trajectory.duration_s(), 1e-3);
+        let chain = robot().chain;
+        let tool = |t: f64| chain.forward(&found.trajectory.at(t)[0]).translation.vector;
+        // Differences over 1 ms miss J t²/24, of jerks of some m/s³ far below the 1 % that is promised.
+        let speeds: Vec<f64> = (0..(duration / step) as usize)
+            .map(|k| (tool((k + 1) as f64 * step) - tool(k as f64 * step)).norm() / step)
+            .collect();
+        let fast = |speed: &f64| *speed >= 0.99 * SPEED;
+        let (from, to) = (speeds.iter().position(fast).unwrap(), speeds.iter().rposition(fast).unwrap());
+        assert!(speeds[from..=to].iter().all(|speed| (speed / SPEED - 1.0).abs() < 0.0101), "{name}");
+        assert!(to - from > speeds.len() * 9 / 10, "{name}: the ramps take a tenth of {duration} s");
+    }
+}
+
 /// The trajectory starts where the robot stands, ends at rest, and every limit holds.
 #[test]
 fn the_trajectory_leads_from_the_robots_state_within_all_limits() {

@@ -191,7 +191,7 @@ fn doubt_about(robot: &Robot, set: &PoseSet, refusal: &Refusal) -> Option<String
         }
         ManipulatorError::Unreachable(_)
         | ManipulatorError::UnreachableBetween { .. }
-        | ManipulatorError::Jump { .. } => source.pose().is_some_and(|pose| {
+        | ManipulatorError::Jump { .. } => source.poses().first().is_some_and(|&pose| {
             stopped(pose, &|end| match end {
                 End::Lost(s) | End::Singular(s, _) => Some(*s),
                 _ => None,

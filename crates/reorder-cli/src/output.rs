@@ -22,8 +22,13 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// The trajectory as CSV: `t`, then positions, velocities and accelerations of every joint, SI units.
-pub(crate) fn trajectory_csv(trajectory: &JointTrajectory) -> String {
+/// The trajectory as CSV: `t`, then positions, velocities and accelerations of every joint, SI units. Headers are read as they stand,
+/// without quotes: a joint whose name would need them goes into no CSV.
+pub(crate) fn trajectory_csv(trajectory: &JointTrajectory) -> Result<String, Failure> {
+    if let Some(joint) = trajectory.joint_names.iter().find(|name| name.contains([',', '"', '\n', '\r'])) {
+        let sentence = format!("joint {joint:?} cannot head a column of a CSV file: write an .mcap file (-o)");
+        return Err(Failure::BadInput(sentence));
+    }
     let mut header = vec!["t".to_owned()];
     for kind in ["position", "velocity", "acceleration"] {
         header.extend(trajectory.joint_names.iter().map(|joint| format!("{joint}.{kind}")));
@@ -34,21 +39,37 @@ pub(crate) fn trajectory_csv(trajectory: &JointTrajectory) -> String {
         let row = row.chain(point.velocities.iter().copied()).chain(point.accelerations.iter().copied());
         text += &(row.map(|x| x.to_string()).collect::<Vec<_>>().join(",") + "\n");
     }
-    text
+    Ok(text)
 }
 
-/// Writes text beside its destination and moves it there when it is complete.
-pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let write = || -> std::io::Result<()> {
+/// Text beside its destination, to be moved there when all that belongs with it is complete; dropped, it leaves nothing.
+pub(crate) struct Pending<'a> {
+    file: tempfile::NamedTempFile,
+    path: &'a Path,
+}
+
+impl<'a> Pending<'a> {
+    pub(crate) fn write(path: &'a Path, text: &str) -> Result<Self, Failure> {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         // Readable by others as far as the umask allows, as any other file would be.
         let readable = std::fs::Permissions::from_mode(0o666);
-        let mut pending = tempfile::Builder::new().permissions(readable).tempfile_in(folder)?;
-        pending.write_all(text.as_bytes())?;
-        pending.persist(path)?;
-        Ok(())
-    };
-    write().map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))
+        let write = || -> std::io::Result<_> {
+            let mut file = tempfile::Builder::new().permissions(readable).tempfile_in(folder)?;
+            file.write_all(text.as_bytes())?;
+            Ok(file)
+        };
+        // A folder in its place would be noticed only when it is too late.
+        let file = if path.is_dir() { Err(ErrorKind::IsADirectory.into()) } else { write() };
+        Ok(Self { file: file.map_err(|error| unwritten(path, &error))?, path })
+    }
+
+    pub(crate) fn appear(self) -> Result<(), Failure> {
+        self.file.persist(self.path).map(drop).map_err(|error| unwritten(self.path, &error.error))
+    }
+}
+
+fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::BadInput(format!("{}: {error}", path.display()))
 }
 
 /// Writes a bag with what the ROS node publishes, on the same topics.

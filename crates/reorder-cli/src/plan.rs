@@ -4,13 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use planner::manipulator::Robot;
+use planner::manipulator::{ManipulatorError, Robot};
 use planner::reorder::Verdict;
 use planner::{Config, Report, Request, plan};
 
 use crate::failure::Failure;
 use crate::order::Topology;
-use crate::output::{print, trajectory_csv, write_bag, write_whole};
+use crate::output::{Pending, print, trajectory_csv, write_bag};
 use crate::source::Source;
 
 #[derive(Args)]
@@ -36,17 +36,21 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "L")]
     metres_per_radian: Option<f64>,
     /// Open curve, closed curve, or told from the poses
-    #[arg(long, default_value = "auto")]
-    topology: Topology,
+    #[arg(long)]
+    topology: Option<Topology>,
     /// Pose (counted from 0) at which the trajectory starts: one of the two ends, unless the curve is closed
     #[arg(long, value_name = "INDEX")]
     start: Option<usize>,
     /// Joint positions the robot stands at, in rad, from base to tool, separated by commas; the trajectory then starts there
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     from: Option<Vec<f64>>,
-    /// Least certain order that is still planned (nothing is certified yet)
-    #[arg(long, default_value = "plausible")]
-    minimum_verdict: MinimumVerdict,
+    /// Least certain order that is still planned
+    #[arg(long)]
+    minimum_verdict: Option<MinimumVerdict>,
+    /// What else shapes a plan, as `timing: {constant_tool_speed_m_s: 0.05}` in YAML: the keys of config/reorder.yaml that are the
+    /// planner's; what the command line says precedes it
+    #[arg(long, value_name = "FILE.yaml")]
+    config: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -73,8 +77,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(Some(extension)) if extension == "mcap" => true,
         Some(_) => return Err(Failure::BadInput("the output must end in .csv or .mcap".into())),
     };
+    spare_inputs(arguments)?;
     let robot = load_robot(&arguments.robot, arguments.limits.as_deref())?;
-    let config = configure(arguments);
+    let config = configure(arguments)?;
     let set = arguments.source.poses()?;
     let request =
         Request { frame_id: set.frame_id, poses: set.poses, start: arguments.from.clone(), ..Request::default() };
@@ -83,14 +88,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let sentence = format!("{name}: {refusal}");
         if refusal.is_bad_input() { Failure::BadInput(sentence) } else { Failure::Refused(sentence) }
     })?;
+    let report = || Report::of(&robot.name, &Ok(plan.clone()), None).to_json() + "\n";
+    // The report appears after the trajectory that it is about, and nothing is replaced where it cannot be written.
+    let report = arguments.report.as_deref().map(|path| Pending::write(path, &report())).transpose()?;
     match &arguments.output {
-        None => print(&trajectory_csv(&plan.trajectory)),
+        None => print(&trajectory_csv(&plan.trajectory)?),
         Some(path) if as_bag => write_bag(path, &plan, &robot.base_frame, &request),
-        Some(path) => write_whole(path, &trajectory_csv(&plan.trajectory)),
+        Some(path) => Pending::write(path, &trajectory_csv(&plan.trajectory)?)?.appear(),
     }?;
-    if let Some(path) = &arguments.report {
-        write_whole(path, &(Report::of(&robot.name, &Ok(plan.clone()), None).to_json() + "\n"))?;
-    }
+    report.map_or(Ok(()), Pending::appear)?;
     let ratio = &plan.audit.max_ratio;
     eprintln!(
         "{} poses, order {:?}; {} points in {:.3} s; peaks at {:.1} % of the velocity, {:.1} % of the acceleration and {:.1} % of the \
@@ -106,16 +112,44 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn configure(arguments: &Arguments) -> Config {
-    let mut config = Config {
-        topology: arguments.topology.into(),
-        start: arguments.start,
-        minimum_verdict: arguments.minimum_verdict.into(),
-        ..Config::default()
+/// No result may take the place of what it is made from, or of another result.
+fn spare_inputs(arguments: &Arguments) -> Result<(), Failure> {
+    let robot = arguments.robot.ends_with(".urdf").then(|| Path::new(&arguments.robot));
+    let files = [&arguments.limits, &arguments.config].into_iter().filter_map(|path| path.as_deref());
+    let mut taken: Vec<PathBuf> = files
+        .chain(robot)
+        .chain([arguments.source.input.as_path()])
+        .filter_map(|path| path.canonicalize().ok())
+        .collect();
+    for path in [&arguments.output, &arguments.report].into_iter().flatten() {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let place =
+            path.canonicalize().or_else(|_| Ok(folder.canonicalize()?.join(path.file_name().unwrap_or_default())));
+        let place = place.map_err(|error: std::io::Error| Failure::BadInput(format!("{}: {error}", path.display())))?;
+        if taken.contains(&place) {
+            let path = path.display();
+            return Err(Failure::BadInput(format!("{path}: already an input or another output of this command")));
+        }
+        taken.push(place);
+    }
+    Ok(())
+}
+
+fn configure(arguments: &Arguments) -> Result<Config, Failure> {
+    let mut config = match &arguments.config {
+        Some(path) => {
+            let named = |error: &dyn std::fmt::Display| Failure::BadInput(format!("{}: {error}", path.display()));
+            Config::from_yaml(&fs::read_to_string(path).map_err(|error| named(&error))?)
+                .map_err(|error| named(&error))?
+        }
+        None => Config::default(),
     };
+    config.topology = arguments.topology.map_or(config.topology, Into::into);
+    config.start = arguments.start.or(config.start);
+    config.minimum_verdict = arguments.minimum_verdict.map_or(config.minimum_verdict, Into::into);
     config.metres_per_radian = arguments.metres_per_radian.unwrap_or(config.metres_per_radian);
     config.timing.rate_hz = arguments.rate.unwrap_or(config.timing.rate_hz);
-    config
+    Ok(config)
 }
 
 /// A shipped robot, with its own limits or others, or a robot from files.
@@ -127,13 +161,28 @@ pub(crate) fn load_robot(name: &str, limits: Option<&Path>) -> Result<Robot, Fai
         let path = path.display().to_string();
         move |error| Failure::BadInput(format!("{path}: {error}"))
     };
+    // Which of the two is at fault where they do not fit is for the user to say.
+    let in_files = |urdf: &Path, settings: &Path| {
+        let both = format!("{} with {}", urdf.display(), settings.display());
+        let (urdf, settings) = (urdf.display().to_string(), settings.display().to_string());
+        move |error: ManipulatorError| {
+            let at_fault = match error {
+                ManipulatorError::Urdf { .. } | ManipulatorError::LinkInertia { .. } => urdf,
+                ManipulatorError::Settings { .. } => settings,
+                _ => both,
+            };
+            Failure::BadInput(format!("{at_fault}: {error}"))
+        }
+    };
     let is_file = name.ends_with(".urdf");
     match limits {
         None if is_file => {
             Err(Failure::BadInput(format!("{name}: a URDF has no acceleration and jerk limits: give --limits")))
         }
         None => Robot::shipped(name).map_err(Failure::bad_input),
-        Some(limits) if is_file => Robot::from_urdf(&read(Path::new(name))?, &read(limits)?).map_err(in_file(limits)),
+        Some(limits) if is_file => {
+            Robot::from_urdf(&read(Path::new(name))?, &read(limits)?).map_err(in_files(Path::new(name), limits))
+        }
         Some(limits) => Robot::shipped_with(name, &read(limits)?).map_err(in_file(limits)),
     }
 }

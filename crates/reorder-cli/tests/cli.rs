@@ -130,7 +130,7 @@ fn refusals_exit_with_1_and_leave_nothing_behind() {
     let (code, said) = refusal(&["plan", &path, "--robot", "ur5e", "-o", output.to_str().unwrap()]);
     assert_eq!(code, 1, "{said}");
     assert!(said.starts_with("reorder: refused: ") && said.contains("far.csv: ur5e: pose"), "{said}");
-    assert!(said.contains("out of reach") && said.contains("(input pose"), "{said}");
+    assert!(said.contains("out of reach") && said.contains("recovered order; input poses "), "{said}");
     assert_eq!(names_in(folder.path()), [PathBuf::from("far.csv")], "nothing half-written stays");
 }
 

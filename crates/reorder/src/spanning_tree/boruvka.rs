@@ -18,8 +18,14 @@ pub(super) const MIXED: u32 = u32::MAX;
 
 /// The edges of the minimum spanning tree as pairs of rows. Fewer than n − 1 where all distances left are too large for a
 /// number: then the components cannot be joined.
-pub(super) fn spanning_pairs<const F: usize, const R: usize>(tree: &KdTree<F, R>, chords: &Chords) -> Vec<[u32; 2]> {
-    let mut candidates = nearest_neighbours(tree, chords);
+///
+/// K is how many nearest neighbours are sought at first. Most points never need a fifth; without a round factor a search is cheap enough
+/// to do again for those that need a fourth.
+pub(super) fn spanning_pairs<const F: usize, const R: usize, const K: usize>(
+    tree: &KdTree<F, R>,
+    chords: &Chords,
+) -> Vec<[u32; 2]> {
+    let mut candidates = nearest_neighbours::<F, R, K>(tree, chords);
     let mut forest = Forest::of_single_slots(tree);
     while forest.sizes.len() > 1 && forest.grow(tree, chords, &mut candidates) {}
     forest.pairs
@@ -47,14 +53,14 @@ struct LeafState {
 
 impl LeafState {
     /// Passes over the candidates that have joined the component, and tells the component of the first that has not.
-    fn advance(&mut self, candidates: &mut [Candidates], components: &Components, leaf: usize) {
+    fn advance<const K: usize>(&mut self, candidates: &mut [Candidates<K>], components: &Components, leaf: usize) {
         self.hopeful = false;
         if self.stocked {
             self.summarise(candidates, components, leaf);
         }
     }
 
-    fn summarise(&mut self, candidates: &mut [Candidates], components: &Components, leaf: usize) {
+    fn summarise<const K: usize>(&mut self, candidates: &mut [Candidates<K>], components: &Components, leaf: usize) {
         *self = Self { stocked: false, hopeful: self.hopeful, bound: f64::INFINITY };
         for (candidates, &own) in candidates.iter_mut().zip(&components.of_slot[leaf * LANES..]) {
             match candidates.foreign(own, components.of_slot) {
@@ -80,11 +86,11 @@ impl Forest {
     }
 
     /// One round; whether any components were joined.
-    fn grow<const F: usize, const R: usize>(
+    fn grow<const F: usize, const R: usize, const K: usize>(
         &mut self,
         tree: &KdTree<F, R>,
         chords: &Chords,
-        candidates: &mut [Candidates],
+        candidates: &mut [Candidates<K>],
     ) -> bool {
         let largest = (0..self.sizes.len()).max_by_key(|&c| self.sizes[c]).unwrap_or(0) as u32;
         let shortest: Vec<_> = self.sizes.iter().map(|_| AtomicU64::new(f64::MAX.to_bits())).collect();

@@ -2,15 +2,13 @@
 
 use super::edge::Edge;
 
-/// How many nearest neighbours are sought at first. Most points never need a fifth.
-pub(super) const K: usize = 4;
 /// No point.
 pub(super) const NOBODY: u32 = u32::MAX;
 
-/// The nearest partners of a point, nearest first by (squared distance, smaller row, greater row).
+/// The K nearest partners of a point, nearest first by (squared distance, smaller row, greater row).
 #[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-pub(super) struct Candidates {
+#[repr(align(16))]
+pub(super) struct Candidates<const K: usize> {
     pub(super) squared: [f64; K],
     pub(super) slots: [u32; K],
     /// No partner outside the list is nearer than this.
@@ -19,7 +17,7 @@ pub(super) struct Candidates {
     pub(super) used: u32,
 }
 
-impl Candidates {
+impl<const K: usize> Candidates<K> {
     /// Finite numbers reach as far as this: a distance that overflows is no candidate.
     pub(super) const NONE: Self = Self { squared: [f64::MAX; K], slots: [NOBODY; K], bound: f64::INFINITY, used: 0 };
 

@@ -79,14 +79,15 @@ impl Chords {
         lane: usize,
         leaf: &Leaf<F, R>,
     ) -> ToLeaf {
-        let mut flat = [0.0; LANES];
+        let mut flats = [[0.0; LANES]; 2];
         let mut round = [0.0; LANES];
-        for (from, leaf) in from.flat.iter().zip(&leaf.flat) {
+        for (axis, (from, leaf)) in from.flat.iter().zip(&leaf.flat).enumerate() {
             let from = from[lane];
             for k in 0..LANES {
-                flat[k] = add_square::<FUSED>(flat[k], leaf[k] - from);
+                flats[axis % 2][k] = add_square::<FUSED>(flats[axis % 2][k], leaf[k] - from);
             }
         }
+        let flat = sum(&flats);
         for (from, leaf) in from.round.iter().zip(&leaf.round) {
             let from = from[lane];
             for k in 0..LANES {
@@ -139,13 +140,14 @@ impl Chords {
         cell: &Cell<F, R>,
     ) -> [f64; LANES] {
         let gap = |x: f64, [low, high]: [f64; 2]| greater(greater(low - x, x - high), 0.0);
-        let mut flat = [0.0; LANES];
+        let mut flats = [[0.0; LANES]; 2];
         let mut round = [0.0; LANES];
-        for (from, &cell) in from.flat.iter().zip(&cell.flat) {
+        for (axis, (from, &cell)) in from.flat.iter().zip(&cell.flat).enumerate() {
             for k in 0..LANES {
-                flat[k] = add_square::<FUSED>(flat[k], gap(from[k], cell));
+                flats[axis % 2][k] = add_square::<FUSED>(flats[axis % 2][k], gap(from[k], cell));
             }
         }
+        let flat = sum(&flats);
         for (from, &cell) in from.round.iter().zip(&cell.round) {
             for k in 0..LANES {
                 round[k] = add_square::<FUSED>(round[k], gap(from[k], cell));
@@ -157,6 +159,16 @@ impl Chords {
         }
         bound
     }
+}
+
+/// The sum of two half sums: half as long a chain of operations that wait for each other.
+#[inline(always)]
+fn sum(halves: &[[f64; LANES]; 2]) -> [f64; LANES] {
+    let mut sum = [0.0; LANES];
+    for k in 0..LANES {
+        sum[k] = halves[0][k] + halves[1][k];
+    }
+    sum
 }
 
 /// θ² from ‖u − v‖² and ‖u + v‖², accurate at π too, where the chord alone loses half the digits.

@@ -53,28 +53,28 @@ impl Coordinates {
 
 fn span_for(embedding: &Embedding) -> Option<Span> {
     Some(match (embedding.flat_dimension, embedding.round.map_or(0, |round| round.dimension)) {
-        (1, 0) => span::<1, 0>,
-        (2, 0) => span::<2, 0>,
-        (3, 0) => span::<3, 0>,
-        (4, 0) => span::<4, 0>,
-        (5, 0) => span::<5, 0>,
-        (6, 0) => span::<6, 0>,
-        (7, 0) => span::<7, 0>,
-        (8, 0) => span::<8, 0>,
+        (1, 0) => span::<1, 0, 3>,
+        (2, 0) => span::<2, 0, 3>,
+        (3, 0) => span::<3, 0, 3>,
+        (4, 0) => span::<4, 0, 3>,
+        (5, 0) => span::<5, 0, 3>,
+        (6, 0) => span::<6, 0, 3>,
+        (7, 0) => span::<7, 0, 3>,
+        (8, 0) => span::<8, 0, 3>,
         // With zeros in the coordinates that are not there.
-        (9..=16, 0) => span::<16, 0>,
-        (17..=32, 0) => span::<32, 0>,
-        (0, 2) => span::<0, 2>,
-        (0, 3) => span::<0, 3>,
-        (0, 4) => span::<0, 4>,
-        (2, 2) => span::<2, 2>,
-        (3, 2) => span::<3, 2>,
-        (3, 4) => span::<3, 4>,
+        (9..=16, 0) => span::<16, 0, 3>,
+        (17..=32, 0) => span::<32, 0, 3>,
+        (0, 2) => span::<0, 2, 4>,
+        (0, 3) => span::<0, 3, 4>,
+        (0, 4) => span::<0, 4, 4>,
+        (2, 2) => span::<2, 2, 4>,
+        (3, 2) => span::<3, 2, 4>,
+        (3, 4) => span::<3, 4, 4>,
         _ => return None,
     })
 }
 
-fn span<const F: usize, const R: usize>(embedding: &Embedding, values: &[f64]) -> Vec<[u32; 2]> {
+fn span<const F: usize, const R: usize, const K: usize>(embedding: &Embedding, values: &[f64]) -> Vec<[u32; 2]> {
     let chords = Chords::new(embedding);
     let record = |(point, row): (&[f64], u32)| {
         let (x, u) = point.split_at(embedding.flat_dimension);
@@ -86,12 +86,12 @@ fn span<const F: usize, const R: usize>(embedding: &Embedding, values: &[f64]) -
     let points = || values.chunks_exact(embedding.dimension()).zip(0..);
     let tree = KdTree::<F, R>::new(points().map(record).collect(), chords.weights());
     if !tree.has_heap() {
-        return boruvka::spanning_pairs(&tree, &chords);
+        return boruvka::spanning_pairs::<F, R, K>(&tree, &chords);
     }
     // A few equal points are like any others, but time grows with the square of their number.
     let distinct = Distinct::of(points(), values.len() / embedding.dimension());
     let records = distinct.points.into_iter().map(record).collect();
-    let mut pairs = boruvka::spanning_pairs(&KdTree::<F, R>::new(records, chords.weights()), &chords);
+    let mut pairs = boruvka::spanning_pairs::<F, R, K>(&KdTree::<F, R>::new(records, chords.weights()), &chords);
     pairs.extend(distinct.repeats);
     pairs
 }

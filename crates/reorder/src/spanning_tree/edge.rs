@@ -1,7 +1,5 @@
 //! The order of edges.
 
-use std::cmp::Ordering;
-
 use se3_geom::Manifold;
 
 /// An edge between two rows, i < j. Compared as (length, i, j): a strict total order, under which the minimum spanning tree is
@@ -26,14 +24,16 @@ impl Edge {
         Self { length, i: a.min(b), j: a.max(b) }
     }
 
-    /// A length that overflows to NaN comes after all numbers.
+    /// A number that grows as (length, i, j) does: lengths are not negative, and those compare as their bits do. A length that overflows
+    /// to NaN, of either sign, comes after all numbers.
     #[inline(always)]
-    pub(super) fn order(&self, other: &Self) -> Ordering {
-        self.length.total_cmp(&other.length).then_with(|| (self.i, self.j).cmp(&(other.i, other.j)))
+    pub(super) fn key(&self) -> u128 {
+        // Adding zero makes a negative zero positive.
+        u128::from((self.length + 0.0).to_bits()) << 64 | u128::from(self.i) << 32 | u128::from(self.j)
     }
 
     #[inline(always)]
     pub(super) fn precedes(&self, other: &Self) -> bool {
-        self.order(other).is_lt()
+        self.key() < other.key()
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use super::boruvka::MIXED;
-use super::candidates::{Candidates, K, NOBODY, tie_precedes};
+use super::candidates::{Candidates, NOBODY, tie_precedes};
 use super::chord::Chords;
 use super::kd_tree::{KdTree, LANES};
 use super::traversal::{Seeker, Stack, search};
@@ -35,12 +35,12 @@ impl Components<'_> {
 
 /// Searches for those points of a leaf that have no candidate left and may yet have the shortest edge of their component,
 /// and tells whether there were any.
-pub(super) fn search_foreign<const F: usize, const R: usize>(
+pub(super) fn search_foreign<const F: usize, const R: usize, const K: usize>(
     tree: &KdTree<F, R>,
     chords: &Chords,
     components: &Components,
     leaf: usize,
-    candidates: &mut [Candidates],
+    candidates: &mut [Candidates<K>],
     stack: &mut Stack,
 ) -> bool {
     let first_slot = leaf * LANES;

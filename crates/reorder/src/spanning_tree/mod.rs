@@ -61,7 +61,7 @@ pub fn minimum_spanning_tree<M: Manifold>(manifold: &M, points: &[M::Point]) -> 
         return Err(OrderError::DistanceOverflow { at: [0, first_row_apart(points.len(), &pairs)] });
     }
     let mut edges: Vec<_> = pairs.iter().map(|&[a, b]| Edge::between(manifold, points, a, b)).collect();
-    edges.sort_unstable_by(Edge::order);
+    edges.sort_unstable_by_key(Edge::key);
     // Lengths that are no number come last.
     if let Some(edge) = edges.iter().find(|edge| !edge.length.is_finite()) {
         return Err(OrderError::DistanceOverflow { at: [edge.i as usize, edge.j as usize] });

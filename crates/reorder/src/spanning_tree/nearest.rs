@@ -2,17 +2,17 @@
 
 use rayon::prelude::*;
 
-use super::candidates::{Candidates, K, NOBODY, tie_precedes};
+use super::candidates::{Candidates, NOBODY, tie_precedes};
 use super::chord::Chords;
 use super::kd_tree::{KdTree, LANES};
 use super::traversal::{Seeker, Stack, search};
 use super::vectorised::{greater, lesser};
 
 /// The candidates of every slot.
-pub(super) fn nearest_neighbours<const F: usize, const R: usize>(
+pub(super) fn nearest_neighbours<const F: usize, const R: usize, const K: usize>(
     tree: &KdTree<F, R>,
     chords: &Chords,
-) -> Vec<Candidates> {
+) -> Vec<Candidates<K>> {
     let mut all = vec![Candidates::NONE; tree.rows.len()];
     all.par_chunks_mut(LANES).enumerate().for_each_init(Stack::new, |stack, (leaf, candidates)| {
         let mut reach = [-1.0; LANES];
@@ -29,14 +29,14 @@ pub(super) fn nearest_neighbours<const F: usize, const R: usize>(
     all
 }
 
-struct Nearest<'a> {
+struct Nearest<'a, const K: usize> {
     rows: &'a [u32],
     first_slot: usize,
-    candidates: &'a mut [Candidates],
+    candidates: &'a mut [Candidates<K>],
     reach: [f64; LANES],
 }
 
-impl Seeker for Nearest<'_> {
+impl<const K: usize> Seeker for Nearest<'_, K> {
     #[inline(always)]
     fn reach(&self) -> &[f64; LANES] {
         &self.reach
