@@ -1,9 +1,10 @@
 """Publishes the PoseArray of a bag once, when somebody listens, and leaves when it has been answered.
 
-    publish_bag.py tests/data/lasa_sine [--joint-state home | --positions Q1 ... Q6] [--subscribers N]
+    publish_bag.py tests/data/lasa_sine [--joint-state home | --positions Q1 ... Q6 | --await-robot] [--subscribers N]
 
 With a joint state, sensor_msgs/JointState goes out at 50 Hz on /joint_states, from before the poses
-until a report answers them, as a robot's driver would. Prints one JSON line. Exit codes: 0 answered,
+until a report answers them, as a robot's driver would. With --await-robot the poses wait until the node
+has heard of a robot. Prints one JSON line. Exit codes: 0 answered,
 2 bad input, 3 nobody listened, acknowledged or answered in time.
 """
 
@@ -13,6 +14,7 @@ import sys
 import time
 
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
@@ -47,6 +49,7 @@ def arguments():
     state = parser.add_mutually_exclusive_group()
     state.add_argument("--joint-state", choices=CONFIGURATIONS_RAD)
     state.add_argument("--positions", type=float, nargs=6, metavar="RAD", help="base to tool")
+    state.add_argument("--await-robot", action="store_true")
     return parser.parse_args()
 
 
@@ -66,19 +69,27 @@ def publish(node, options, frame_id, rows, positions):
     deadline = time.monotonic() + options.timeout
     poses = node.create_publisher(PoseArray, TOPIC, QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE))
     states = JointStates(node, positions) if positions else None
-    answers = []
+    answers, robots = [], []
     latched = QoSProfile(
         depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
     )
     node.create_subscription(String, "/reorder/report", answers.append, latched)
 
-    while poses.get_subscription_count() < options.subscribers or (states and not states.settled()):
+    if options.await_robot:
+        node.create_subscription(DiagnosticArray, "/diagnostics", lambda message: robots.extend(heard(message)), 10)
+
+    def everybody():
+        robot = states.settled() if states else robots if options.await_robot else True
+        return robot and poses.get_subscription_count() >= options.subscribers
+
+    while not everybody():
         left = deadline - time.monotonic()
         if left <= 0:
             found = poses.get_subscription_count()
             print(
                 f"{TOPIC} has {found} of {options.subscribers} subscribers"
                 + (f", /joint_states {states.listeners()}" if states else "")
+                + (", and the node has heard of no robot" if options.await_robot and not robots else "")
                 + f" after {options.timeout:g} s.",
                 file=sys.stderr,
             )
@@ -104,6 +115,11 @@ def publish(node, options, frame_id, rows, positions):
     line = {"topic": TOPIC, "bag": options.bag, "frame_id": frame_id, "n_poses": len(rows)}
     print(json.dumps({**line, "subscribers": listeners, "joint_states": sent}), flush=True)
     return 0
+
+
+def heard(diagnostics):
+    """The states of health that say that joint states arrive at the node."""
+    return [s for s in diagnostics.status if s.name.endswith("reorder: joint states") and s.level == DiagnosticStatus.OK]
 
 
 class JointStates:

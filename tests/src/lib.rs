@@ -31,3 +31,20 @@ pub fn python(arguments: &[&str]) -> std::process::Output {
     command.args(arguments).current_dir(root()).stdin(Stdio::null());
     command.output().unwrap_or_else(|error| panic!("{}: {error}; run `cargo xtask setup`", interpreter.display()))
 }
+
+/// The interpreter that has rclpy: the set-up's, or the shell's where a ROS 2 is sourced.
+pub fn ros_python() -> PathBuf {
+    let sourced = std::env::var("AMENT_PREFIX_PATH").is_ok_and(|prefix| !Path::new(&prefix).ends_with(".deps/ros"));
+    if sourced { "python3".into() } else { root().join(".deps/venv/bin/python") }
+}
+
+/// An executable of another crate, beside the test that runs: `cargo test --workspace` builds them all.
+///
+/// # Panics
+/// Where it was not built.
+pub fn executable(name: &str) -> PathBuf {
+    let test = std::env::current_exe().expect("a test has a file");
+    let built = test.ancestors().nth(2).expect("it lies in deps").join(name);
+    assert!(built.is_file(), "{} is not there: run `cargo build --workspace`", built.display());
+    built
+}

@@ -9,6 +9,7 @@ use crate::chain::Chain;
 use crate::dynamics::{Drive, Dynamics, GRAVITY_M_S2};
 use crate::error::{ManipulatorError, Result};
 use crate::inertia::Inertia;
+use crate::link::Link;
 use crate::settings_keys;
 use crate::urdf::{self, UrdfLimits};
 
@@ -52,6 +53,8 @@ pub struct Robot {
     pub name: String,
     /// Kinematics from base frame to tool frame.
     pub chain: Chain,
+    /// The same kinematics link by link, for whoever draws the arm: the moving ones in the order of the chain's joints.
+    pub links: Vec<Link>,
     /// What each joint may do.
     pub limits: Limits,
     /// Torques that motions need; none where no link between the joints and the tool has a mass.
@@ -184,11 +187,12 @@ impl Robot {
             effort: column(5),
         };
         let preferred = column(6);
-        let mut links = urdf::carried(&description, &settings.base_frame, &settings.tool_frame)?;
+        let links = urdf::links(&description, &settings.base_frame, &settings.tool_frame)?;
+        let mut carried = urdf::carried(&description, &settings.base_frame, &settings.tool_frame)?;
         let payload = Vector3::from(settings.payload.center_of_mass_m);
         let payload = Inertia::of_body(settings.payload.mass_kg, payload, Matrix3::zeros())
             .map_err(|error| ManipulatorError::Settings { reason: format!("payload: {error}") })?;
-        if let Some(last) = links.last_mut() {
+        if let Some(last) = carried.last_mut() {
             *last = *last + payload.in_parent(chain.home());
         }
         let drives: Vec<Drive> = chain
@@ -201,10 +205,10 @@ impl Robot {
                 friction_n_m: stated.friction,
             })
             .collect();
-        let dynamics = Dynamics::new(&chain, &links, &drives, settings.gravity_m_s2)?;
-        let dynamics = links.iter().any(|link| link.mass_kg() > 0.0).then_some(dynamics);
+        let dynamics = Dynamics::new(&chain, &carried, &drives, settings.gravity_m_s2)?;
+        let dynamics = carried.iter().any(|link| link.mass_kg() > 0.0).then_some(dynamics);
         let Settings { base_frame, tool_frame, .. } = settings;
-        Ok(Self { name: description.name, chain, limits, dynamics, preferred, base_frame, tool_frame })
+        Ok(Self { name: description.name, chain, links, limits, dynamics, preferred, base_frame, tool_frame })
     }
 
     /// Whether `q` has a finite position for every joint, within its limits up to rounding; `what` names it in the error.

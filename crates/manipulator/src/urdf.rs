@@ -9,6 +9,7 @@ use urdf_rs::{Joint, JointType};
 use crate::chain::Chain;
 use crate::error::{ManipulatorError, Result};
 use crate::inertia::Inertia;
+use crate::link::Link;
 
 /// Limits of one joint as the URDF has them.
 pub(crate) struct UrdfLimits {
@@ -76,6 +77,15 @@ pub(crate) fn chain(robot: &urdf_rs::Robot, base: &str, tool: &str) -> Result<(C
         })
         .collect();
     Ok((Chain::new(screws, base_from_link), limits))
+}
+
+/// The links from `base`, which is not among them, to `tool`.
+pub(crate) fn links(robot: &urdf_rs::Robot, base: &str, tool: &str) -> Result<Vec<Link>> {
+    let link = |joint: &Joint| {
+        let screw = (joint.joint_type != JointType::Fixed).then(|| unit_screw(joint)).transpose()?;
+        Ok(Link { name: joint.child.link.clone(), parent_from_joint: origin(joint)?, screw })
+    };
+    joints_between(robot, base, tool)?.into_iter().map(link).collect()
 }
 
 fn joints_between<'a>(robot: &'a urdf_rs::Robot, base: &str, tool: &str) -> Result<Vec<&'a Joint>> {

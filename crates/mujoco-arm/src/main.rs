@@ -66,6 +66,8 @@ fn main() -> ExitCode {
 enum ArmError {
     #[error("parameters: {0}")]
     Parameters(String),
+    #[error("ROS 2 refuses the command line or a parameter file: {0}")]
+    CommandLine(String),
     #[error("{0}")]
     Simulation(#[from] mujoco_sim::SimError),
     #[error("the middleware stopped: {0}")]
@@ -83,10 +85,26 @@ fn run() -> Result<(), ArmError> {
     result
 }
 
+/// r2r panics where rcl refuses the arguments; this makes an error of it.
+fn create_context() -> Result<Context, ArmError> {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    let created = std::panic::catch_unwind(Context::create);
+    std::panic::set_hook(hook);
+    match created {
+        Ok(context) => Ok(context?),
+        Err(panic) => {
+            let why = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+            let words: Vec<_> = why.unwrap_or("no reason given").split_whitespace().collect();
+            Err(ArmError::CommandLine(words.join(" ")))
+        }
+    }
+}
+
 async fn serve() -> Result<(), ArmError> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
-    let context = Context::create()?;
+    let context = create_context()?;
     let mut node = Node::create(context.clone(), "mujoco_arm", "")?;
     let settings = Settings::read(&node)?;
     let robot = Robot::shipped(&settings.robot).map_err(|error| ArmError::Parameters(format!("robot: {error}")))?;

@@ -10,6 +10,8 @@ use crate::refusal::Refusal;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
+    /// A [`Session`](crate::Session) refuses more poses than this at a time, so that an answer does not take hours.
+    pub max_poses: usize,
     /// How many metres count as much as one radian when poses are compared. Changes the order, so it is reported.
     pub metres_per_radian: f64,
     /// Whether the curve is open or closed, or to be decided from the poses.
@@ -56,6 +58,7 @@ pub enum OnRefusal {
 impl Default for Config {
     fn default() -> Self {
         Self {
+            max_poses: 10_000,
             metres_per_radian: 0.1,
             topology: TopologyChoice::Auto,
             start: None,

@@ -104,10 +104,14 @@ pub struct Outcome {
 /// What happened so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
-    /// Pose messages received.
+    /// Pose messages received. All are answered or superseded but the last, which may still be planned.
     pub received: u64,
-    /// Pose messages replaced by a newer one before they were planned.
+    /// Pose messages that a trajectory or a refusal answered.
+    pub answered: u64,
+    /// Pose messages without an answer, because newer ones came, or they were cleared.
     pub superseded: u64,
+    /// How many of these came since the last answer.
+    pub in_vain: u64,
     /// Trajectories published.
     pub planned: u64,
     /// Refusals published.

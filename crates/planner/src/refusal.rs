@@ -36,6 +36,14 @@ pub enum Refusal {
         /// What is wrong with it.
         reason: InvalidPose,
     },
+    /// More poses than are planned at a time.
+    #[error("{given} poses are more than the {allowed} that are planned at a time (max_poses)")]
+    TooManyPoses {
+        /// How many came.
+        given: usize,
+        /// How many the configuration allows.
+        allowed: usize,
+    },
     /// The start state does not fit the robot.
     #[error("{0}")]
     StartState(ManipulatorError),
@@ -184,6 +192,7 @@ impl Refusal {
                 | Self::Frame { .. }
                 | Self::Unplaced { .. }
                 | Self::InvalidPose { .. }
+                | Self::TooManyPoses { .. }
                 | Self::StartState(_)
                 | Self::Order(_)
         )

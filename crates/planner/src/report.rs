@@ -11,6 +11,9 @@ use crate::refusal::Refusal;
 /// The order, and either the plan's audit or the refusal. Serialises to the JSON object of `reorder order` with further keys.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
+    /// The stamp of the poses that it answers, in ns since the epoch, where they came with one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stamp_ns: Option<i64>,
     /// The order, where there is one.
     #[serde(flatten)]
     pub ordering: Option<Ordering>,
@@ -57,6 +60,7 @@ impl Report {
                 let takes_over_s = motion.map_or(0.0, |motion| motion.takes_over_s);
                 let published = motion.map_or(&plan.trajectory, |motion| &motion.trajectory);
                 Self {
+                    stamp_ns: None,
                     ordering: Some(plan.ordering.clone()),
                     plan: Some(PlanReport {
                         robot: robot.to_owned(),
@@ -74,7 +78,8 @@ impl Report {
                 }
             }
             Err(refusal) => {
-                Self { ordering: refusal.ordering().cloned(), plan: None, refusal: Some(refusal.to_string()) }
+                let (ordering, refusal) = (refusal.ordering().cloned(), Some(refusal.to_string()));
+                Self { stamp_ns: None, ordering, plan: None, refusal }
             }
         }
     }

@@ -34,6 +34,8 @@ pub struct Session {
     last: Option<Request>,
     running: bool,
     waiting: bool,
+    /// Whether the last message of poses has no answer yet.
+    due: bool,
     generation: u64,
     counters: Counters,
     motion: Option<Motion>,
@@ -54,6 +56,7 @@ impl Session {
             last: None,
             running: false,
             waiting: false,
+            due: false,
             generation: 0,
             counters: Counters::default(),
         }
@@ -79,7 +82,7 @@ impl Session {
         match input {
             Input::Poses { frame_id, stamp_ns, poses } => self.poses(now_s, frame_id, stamp_ns, &poses),
             Input::Unplaced { frame_id, stamp_ns, why } => {
-                self.counters.received += 1;
+                self.receive();
                 let (given, base) = (frame_id.clone(), self.robot.base_frame.clone());
                 let request = Request { frame_id, stamp_ns, ..Request::default() };
                 self.refuse_poses(now_s, request, Refusal::Unplaced { given, base, why })
@@ -99,6 +102,7 @@ impl Session {
                 outputs
             }
             Input::Clear => {
+                self.give_up();
                 self.last = None;
                 self.waiting = false;
                 self.generation += 1;
@@ -113,6 +117,7 @@ impl Session {
                 Vec::new()
             }
             Input::Robot(robot) => {
+                self.give_up();
                 self.robot = Arc::new(*robot);
                 (self.joints, self.motion, self.last) = (None, None, None);
                 self.waiting = false;
@@ -126,7 +131,11 @@ impl Session {
     /// Takes new poses, or refuses them as a whole. Refused poses also displace the ones before: what was asked for last must
     /// not be answered with a motion through something older.
     fn poses(&mut self, now_s: f64, frame_id: String, stamp_ns: i64, raw: &[RawPose]) -> Vec<Output> {
-        self.counters.received += 1;
+        self.receive();
+        if raw.len() > self.config.max_poses {
+            let refusal = Refusal::TooManyPoses { given: raw.len(), allowed: self.config.max_poses };
+            return self.refuse_poses(now_s, Request { frame_id, stamp_ns, ..Request::default() }, refusal);
+        }
         let checked = raw.iter().enumerate().map(|(input_pose, raw)| {
             pose_from_xyzw(raw.position, raw.quaternion_xyzw)
                 .map_err(|reason| Refusal::InvalidPose { input_pose, reason })
@@ -142,11 +151,28 @@ impl Session {
                 self.last = Some(request);
                 // A motion through older poses is not wanted any more.
                 self.generation += u64::from(self.running);
-                self.counters.superseded += u64::from(self.waiting);
                 self.request_plan(now_s)
             }
             Err(refusal) => self.refuse_poses(now_s, Request { frame_id, stamp_ns, ..Request::default() }, refusal),
         }
+    }
+
+    /// A message of poses arrived: one before it that has no answer yet gets none.
+    fn receive(&mut self) {
+        self.counters.received += 1;
+        self.give_up();
+        self.due = true;
+    }
+
+    fn give_up(&mut self) {
+        let replaced = u64::from(std::mem::take(&mut self.due));
+        self.counters.superseded += replaced;
+        self.counters.in_vain += replaced;
+    }
+
+    fn answer(&mut self) {
+        self.counters.answered += u64::from(std::mem::take(&mut self.due));
+        self.counters.in_vain = 0;
     }
 
     fn refuse_poses(&mut self, now_s: f64, request: Request, refusal: Refusal) -> Vec<Output> {
@@ -224,6 +250,7 @@ impl Session {
     /// Publishes a refusal, and stops a robot that is under way if that is what the configuration asks for.
     fn refuse(&mut self, now_s: f64, request: Request, refusal: Refusal) -> Output {
         self.counters.refused += 1;
+        self.answer();
         let stop = match self.executing(now_s) {
             Some(motion) if self.config.on_refusal == OnRefusal::Stop => {
                 // The motion was audited under these very limits: where nothing better is found, its stop is its remainder.
@@ -245,6 +272,7 @@ impl Session {
             match result.and_then(|plan| Ok((self.take_over(now_s, &request, &plan)?, plan))) {
                 Ok((Some(motion), plan)) => {
                     self.counters.planned += 1;
+                    self.answer();
                     self.motion = Some(motion.clone());
                     let (generation, motion) = (self.generation, Some(motion));
                     outputs.push(Output::Publish(Box::new(Outcome { generation, request, result: Ok(plan), motion })));

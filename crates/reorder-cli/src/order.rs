@@ -1,5 +1,6 @@
 //! `reorder order`.
 
+use ::report::{counted, explain};
 use clap::{Args, ValueEnum};
 use planner::reorder::{
     ComponentsChoice, EdgeFigures, MethodChoice, Options, Ordering, Repair, TopologyChoice, Verdict, Weight,
@@ -8,7 +9,6 @@ use serde::Serialize;
 use tracing::debug_span;
 
 use crate::ask::Ask;
-use crate::explain::{counted, explain};
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress::with_progress;

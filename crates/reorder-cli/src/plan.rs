@@ -10,7 +10,7 @@ use planner::{Config, Report, Request, plan};
 
 use crate::failure::Failure;
 use crate::order::Topology;
-use crate::output::{Pending, print, trajectory_csv, write_bag};
+use crate::output::{Pending, print, spare, trajectory_csv, write_bag};
 use crate::source::Source;
 
 #[derive(Args)]
@@ -77,7 +77,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(Some(extension)) if extension == "mcap" => true,
         Some(_) => return Err(Failure::BadInput("the output must end in .csv or .mcap".into())),
     };
-    spare_inputs(arguments)?;
+    let urdf = arguments.robot.ends_with(".urdf").then(|| Path::new(&arguments.robot));
+    let inputs = [&arguments.limits, &arguments.config].into_iter().filter_map(|path| path.as_deref());
+    let outputs = [&arguments.output, &arguments.report].into_iter().filter_map(|path| path.as_deref());
+    spare(inputs.chain(urdf).chain([arguments.source.input.as_path()]), outputs)?;
     let robot = load_robot(&arguments.robot, arguments.limits.as_deref())?;
     let config = configure(arguments)?;
     let set = arguments.source.poses()?;
@@ -109,29 +112,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         100.0 * ratio.acceleration,
         100.0 * ratio.jerk
     );
-    Ok(())
-}
-
-/// No result may take the place of what it is made from, or of another result.
-fn spare_inputs(arguments: &Arguments) -> Result<(), Failure> {
-    let robot = arguments.robot.ends_with(".urdf").then(|| Path::new(&arguments.robot));
-    let files = [&arguments.limits, &arguments.config].into_iter().filter_map(|path| path.as_deref());
-    let mut taken: Vec<PathBuf> = files
-        .chain(robot)
-        .chain([arguments.source.input.as_path()])
-        .filter_map(|path| path.canonicalize().ok())
-        .collect();
-    for path in [&arguments.output, &arguments.report].into_iter().flatten() {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let place =
-            path.canonicalize().or_else(|_| Ok(folder.canonicalize()?.join(path.file_name().unwrap_or_default())));
-        let place = place.map_err(|error: std::io::Error| Failure::BadInput(format!("{}: {error}", path.display())))?;
-        if taken.contains(&place) {
-            let path = path.display();
-            return Err(Failure::BadInput(format!("{path}: already an input or another output of this command")));
-        }
-        taken.push(place);
-    }
     Ok(())
 }
 

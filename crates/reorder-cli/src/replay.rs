@@ -18,12 +18,12 @@ use planner::pose_bag::{Grouping, Selection, remove_abandoned};
 use planner::reorder::{Options, Weight};
 use rayon::prelude::*;
 
-use crate::explain::counted;
 use crate::failure::Failure;
 use crate::order::{Topology, weight};
 use crate::output::print;
 use crate::plan::{MinimumVerdict, load_robot};
 use crate::source::frame_pair;
+use ::report::counted;
 use bag::{Task, replay};
 use inputs::Input;
 use summary::{BagSummary, Status, table};

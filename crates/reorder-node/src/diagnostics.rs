@@ -4,6 +4,9 @@ use std::collections::VecDeque;
 
 use planner::{Counters, Refusal};
 
+/// So many poses in a row without an answer are a source that is faster than planning, not a person who thought better of it.
+const IN_VAIN: u64 = 5;
+
 /// As in `diagnostic_msgs/DiagnosticStatus`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Level {
@@ -167,11 +170,20 @@ impl Health {
     fn inputs(&self, now: &Situation<'_>) -> Status {
         let lost = now.lost() - self.reported_lost;
         let (level, message) = match lost {
+            0 if now.counters.in_vain >= IN_VAIN => (
+                Level::Warn,
+                format!(
+                    "the last {} poses were replaced by newer ones before they were planned: that takes {} s",
+                    now.counters.in_vain,
+                    self.planning.quantile(0.5).map_or_else(|| "more".into(), |s| format!("{s:.2}"))
+                ),
+            ),
             0 => (Level::Ok, "every message was taken up".to_owned()),
             lost => (Level::Warn, format!("{lost} messages came faster than they could be taken up, and were dropped")),
         };
         let values = vec![
             ("poses_received", (now.counters.received + now.replaced + now.poses_dropped).to_string()),
+            ("poses_answered", now.counters.answered.to_string()),
             ("poses_superseded", (now.counters.superseded + now.replaced).to_string()),
             ("poses_dropped", now.poses_dropped.to_string()),
             ("single_poses_waiting", now.collected.to_string()),
@@ -274,6 +286,9 @@ mod tests {
         // What was lost is reported once.
         assert_eq!(levels(&mut health, &situation(Some(0.1), true, 3)), [Ok, Ok, Ok, Warn]);
         assert_eq!(levels(&mut health, &situation(Some(0.1), true, 3)), [Ok, Ok, Ok, Ok]);
+        let mut hurried = situation(Some(0.1), true, 3);
+        hurried.counters.in_vain = IN_VAIN;
+        assert_eq!(levels(&mut health, &hurried), [Ok, Ok, Ok, Warn]);
         health.last = Some(Answer::refused(&Refusal::StaleJointState { age_s: 2.0, allowed_s: 1.0 }));
         health.robot_fault = Some("no joints".into());
         assert_eq!(levels(&mut health, &situation(Some(0.1), true, 3)), [Warn, Ok, Error, Ok]);

@@ -1,6 +1,6 @@
 //! Trajectories to a controller as goals of its `FollowJointTrajectory` action: accepted or not, feedback, cancel, result.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use futures::StreamExt;
 use r2r::control_msgs::action::FollowJointTrajectory as Follow;
@@ -8,8 +8,15 @@ use r2r::trajectory_msgs::msg::JointTrajectory;
 use r2r::{ActionClient, ActionClientGoal, GoalStatus, Node};
 use tokio::sync::mpsc;
 
+use crate::message::stamp_ns;
+use crate::stamps::Stamps;
+
 /// How long a controller may take to be found, and to answer.
-const CONTROLLER_TIMEOUT: Duration = Duration::from_secs(2);
+pub(crate) const CONTROLLER_TIMEOUT: Duration = Duration::from_secs(2);
+/// After so long without feedback it is asked whether there still is a controller.
+const SILENCE: Duration = Duration::from_secs(2);
+/// How long after its end a trajectory may stay without a result before somebody should look.
+const OVERDUE: Duration = Duration::from_secs(10);
 
 /// What becomes of a goal, with the number of the goal.
 pub(crate) struct Event {
@@ -26,6 +33,8 @@ pub(crate) enum What {
     Feedback {
         error: f64,
     },
+    /// It should have ended, and nothing is heard of it.
+    Overdue,
     Ended(End),
 }
 
@@ -76,6 +85,7 @@ async fn follow(
     tell: &impl Fn(What),
 ) -> Result<(), What> {
     let failed = |error: r2r::Error| What::NotSent(error.to_string());
+    let due = Instant::now() + time_to_end(&trajectory) + OVERDUE;
     let nobody = |_| What::NotSent(format!("nobody serves the action {name}"));
     let available = Node::is_available(client).map_err(failed)?;
     tokio::time::timeout(CONTROLLER_TIMEOUT, available).await.map_err(nobody)?.map_err(failed)?;
@@ -88,12 +98,14 @@ async fn follow(
     })?;
     tell(What::Accepted(goal));
     tokio::pin!(result);
+    let (mut watch, mut heard, mut told) = (tokio::time::interval(SILENCE), Instant::now(), false);
     loop {
         tokio::select! {
             // What was said on the way comes before the end.
             biased;
             Some(message) = feedback.next() => {
                 let error = message.error.positions.iter().fold(0.0, |most, error| f64::max(most, error.abs()));
+                heard = Instant::now();
                 tell(What::Feedback { error });
             }
             ended = &mut result => {
@@ -101,8 +113,36 @@ async fn follow(
                 tell(What::Ended(ended.map_or_else(lost, |(status, result)| end(status, &result))));
                 return Ok(());
             }
+            // A controller that died does not say so.
+            _ = watch.tick() => {
+                if heard.elapsed() < SILENCE {
+                    continue;
+                }
+                if !is_served(client).await {
+                    tell(What::Ended(End::Lost(format!("nobody serves the action {name} any more"))));
+                    return Ok(());
+                }
+                if Instant::now() > due && !std::mem::replace(&mut told, true) {
+                    tell(What::Overdue);
+                }
+            }
         }
     }
+}
+
+async fn is_served(client: &ActionClient<Follow::Action>) -> bool {
+    let Ok(available) = Node::is_available(client) else { return false };
+    tokio::time::timeout(CONTROLLER_TIMEOUT, available).await.is_ok_and(|available| available.is_ok())
+}
+
+/// From now to the last point of a trajectory.
+fn time_to_end(trajectory: &JointTrajectory) -> Duration {
+    let stamp_ns = stamp_ns(&trajectory.header.stamp);
+    let wait_ns = if stamp_ns == 0 { 0 } else { stamp_ns - Stamps::now_ns() };
+    let takes_ns = trajectory.points.last().map_or(0, |last| {
+        i64::from(last.time_from_start.sec) * 1_000_000_000 + i64::from(last.time_from_start.nanosec)
+    });
+    Duration::from_nanos((wait_ns + takes_ns).max(0) as u64)
 }
 
 fn end(status: GoalStatus, result: &Follow::Result) -> End {

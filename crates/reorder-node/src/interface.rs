@@ -129,7 +129,8 @@ impl Publishers {
         outcome: &Outcome,
         send: impl FnOnce(&Motion) -> r2r::Result<()>,
     ) -> r2r::Result<()> {
-        let report = Report::of(&robot.name, &outcome.result, outcome.motion.as_ref());
+        let mut report = Report::of(&robot.name, &outcome.result, outcome.motion.as_ref());
+        report.stamp_ns = Some(outcome.request.stamp_ns);
         self.report.publish(&r2r::std_msgs::msg::String { data: report.to_json() })?;
         let header = header(&robot.base_frame, outcome.request.stamp_ns);
         match &outcome.result {

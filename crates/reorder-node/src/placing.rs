@@ -35,14 +35,14 @@ impl Placing {
         self.replaced += u64::from(self.waiting.replace((at, message)).is_some());
     }
 
-    /// How many waited in vain, because newer ones came.
+    /// How many waited in vain, because newer ones came, or all were cleared.
     pub(crate) fn replaced(&self) -> u64 {
         self.replaced
     }
 
     /// Nothing waits any more.
     pub(crate) fn clear(&mut self) {
-        self.waiting = None;
+        self.replaced += u64::from(self.waiting.take().is_some());
     }
 
     /// When the waiting poses have waited long enough.

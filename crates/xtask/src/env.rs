@@ -49,6 +49,10 @@ impl Layout {
         self.deps().join("mujoco")
     }
 
+    pub(crate) fn browser(&self) -> PathBuf {
+        self.deps().join("browser")
+    }
+
     pub(crate) fn libclang(&self) -> PathBuf {
         self.deps().join("libclang")
     }

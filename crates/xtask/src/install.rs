@@ -39,6 +39,16 @@ pub(crate) fn build(layout: &Layout) -> Outcome<Vec<PathBuf>> {
         .collect()
 }
 
+/// The same, as an earlier build left them beside this program.
+pub(crate) fn built_before() -> Outcome<Vec<PathBuf>> {
+    let here = std::env::current_exe().map_err(Failure::io("find", "this program"))?;
+    let of = |name: &&str| {
+        let path = here.with_file_name(name);
+        if path.is_file() { Ok(path) } else { Err(Failure::step("the launch", format!("{name} is not built"))) }
+    };
+    EXECUTABLES.iter().map(of).collect()
+}
+
 fn write(root: &Path, executables: &[PathBuf], prefix: &Path) -> Outcome {
     let share = prefix.join("share").join(PACKAGE);
     let lib = prefix.join("lib").join(PACKAGE);

@@ -1,6 +1,7 @@
 //! Every chore of the project, as `cargo xtask CHORE`.
 
 mod bench;
+mod browser;
 mod demo;
 mod env;
 mod failure;
@@ -24,16 +25,15 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 enum Chore {
-    /// Put ROS 2, MuJoCo and Python packages into .deps (idempotent, resumable)
+    /// Put ROS 2, MuJoCo, Python packages, three.js and a browser to test with into .deps (idempotent, resumable)
     Setup,
     /// Set up, build, and run the main job for real: recorded poses, ROS 2, the node, MuJoCo
     Demo,
     /// Run a long test at full length and print its figures
     Soak {
         name: soak::Soak,
-        /// How many random cases, or seconds
-        #[arg(default_value_t = 1000)]
-        amount: u32,
+        /// How many random cases (else 1000), seconds (fuzz-*, else 1000; link, else 60), or minutes (load, else 10)
+        amount: Option<u32>,
     },
     /// Shuffle recordings whose order is known, have `reorder order` put them right, and print how many it did
     Score {
@@ -57,6 +57,9 @@ enum Chore {
         file: PathBuf,
         /// name:=value
         arguments: Vec<String>,
+        /// Start what was built before, without the set-up and a build
+        #[arg(long)]
+        no_build: bool,
     },
     /// Set up, then run clippy and rustdoc over the workspace with warnings as errors
     Lint,
@@ -67,13 +70,13 @@ enum Chore {
 fn main() -> ExitCode {
     let layout = env::Layout::of_this_checkout();
     let outcome = match Chore::parse() {
-        Chore::Setup => setup::run(&layout),
+        Chore::Setup => setup::run_for_tests(&layout),
         Chore::Demo => demo::run(&layout),
         Chore::Soak { name, amount } => soak::run(&layout, name, amount),
         Chore::Score { folder, max_n, seed } => score::run(&layout, folder.as_deref(), max_n, seed),
         Chore::Bench { area } => bench::run(&layout, &area),
         Chore::Install { prefix } => install::run(&layout, &prefix),
-        Chore::Launch { file, arguments } => launch::run(&layout, &file, &arguments),
+        Chore::Launch { file, arguments, no_build } => launch::run(&layout, &file, &arguments, !no_build),
         Chore::Lint => test::lint(&layout),
         Chore::Test => test::test(&layout),
     };

@@ -1,11 +1,9 @@
 //! `.deps/mujoco`: the MuJoCo library and models of the shipped arms, all from Python wheels.
 
 use crate::env::Layout;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::python;
 use crate::setup::{Step, replace_folder};
-use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const LIBRARY: &str = "mujoco==3.17.0";
@@ -23,30 +21,11 @@ pub(crate) fn step(layout: &Layout, upstream: &str) -> Step {
 }
 
 fn make(layout: &Layout) -> Outcome {
-    let library = download(layout, LIBRARY)?;
-    let models = MODELS.iter().map(|models| download(layout, models)).collect::<Outcome<Vec<_>>>()?;
+    let library = python::wheel(layout, LIBRARY)?;
+    let models = MODELS.iter().map(|models| python::wheel(layout, models)).collect::<Outcome<Vec<_>>>()?;
     replace_folder(&layout.mujoco(), |folder| {
         let mut unpack = Command::new(layout.venv_python());
         unpack.args(["-c", UNPACK]).arg(&library).args(&models).arg(folder);
         python::output("unpacking MuJoCo", &mut unpack).map(drop)
     })
-}
-
-/// The wheel of one package, from the network unless an earlier run left it.
-fn download(layout: &Layout, requirement: &str) -> Outcome<PathBuf> {
-    let folder = layout.deps().join("wheels").join(requirement);
-    if let Some(wheel) = wheel_in(&folder) {
-        return Ok(wheel);
-    }
-    let options = ["download", "--no-deps", "--only-binary", ":all:", "--dest"].map(AsRef::as_ref);
-    python::pip(layout, &layout.venv(), options.into_iter().chain([folder.as_os_str(), requirement.as_ref()]))?;
-    wheel_in(&folder).ok_or_else(|| Failure::Step {
-        what: format!("downloading {requirement}"),
-        detail: "pip left no wheel".to_owned(),
-    })
-}
-
-fn wheel_in(folder: &Path) -> Option<PathBuf> {
-    let files = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
-    files.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "whl"))
 }

@@ -65,10 +65,19 @@ impl Running {
         }
     }
 
+    /// Asks it to end as Ctrl-C does.
+    pub(crate) fn ask_to_end(&self) {
+        // A process that is gone already needs no asking.
+        let _ = Command::new("kill").args(["-INT", &self.id().to_string()]).stderr(Stdio::null()).status();
+    }
+
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Asks it to end as Ctrl-C does, and expects a clean exit.
     pub(crate) fn interrupt(self) -> Outcome {
-        let process = self.child.id().to_string();
-        Command::new("kill").args(["-INT", &process]).status().map_err(Failure::io("run", "kill"))?;
+        self.ask_to_end();
         self.finish()
     }
 }

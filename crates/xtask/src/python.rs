@@ -76,6 +76,25 @@ pub(crate) fn pip<'a>(layout: &Layout, venv: &Path, arguments: impl IntoIterator
     })
 }
 
+/// The wheel of one package, from the network unless an earlier run left it.
+pub(crate) fn wheel(layout: &Layout, requirement: &str) -> Outcome<PathBuf> {
+    let folder = layout.deps().join("wheels").join(requirement);
+    if let Some(wheel) = wheel_in(&folder) {
+        return Ok(wheel);
+    }
+    let options = ["download", "--no-deps", "--only-binary", ":all:", "--dest"].map(AsRef::as_ref);
+    pip(layout, &layout.venv(), options.into_iter().chain([folder.as_os_str(), requirement.as_ref()]))?;
+    wheel_in(&folder).ok_or_else(|| Failure::Step {
+        what: format!("downloading {requirement}"),
+        detail: "pip left no wheel".to_owned(),
+    })
+}
+
+fn wheel_in(folder: &Path) -> Option<PathBuf> {
+    let files = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
+    files.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "whl"))
+}
+
 fn is_network_trouble(line: &str) -> bool {
     [
         "Retrying (Retry",

@@ -2,7 +2,7 @@
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
-use crate::{interfaces, mujoco, python, ros};
+use crate::{browser, interfaces, mujoco, python, ros};
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -18,8 +18,19 @@ pub(crate) struct Step {
     pub(crate) make: Box<dyn FnOnce(&Layout) -> Outcome>,
 }
 
-/// Brings what the product needs in `.deps` up to date.
+/// Brings what the demo needs in `.deps` up to date.
 pub(crate) fn run(layout: &Layout) -> Outcome {
+    take(layout, steps(layout)?)
+}
+
+/// Brings all in `.deps` up to date: also what draws the report's page, and what tests it.
+pub(crate) fn run_for_tests(layout: &Layout) -> Outcome {
+    let mut steps = steps(layout)?;
+    steps.push(browser::step(layout, &python::step(layout).recipe));
+    take(layout, steps)
+}
+
+fn steps(layout: &Layout) -> Outcome<Vec<Step>> {
     let python = python::step(layout);
     // What is made from the Python environment is made again with it.
     let upstream = python.recipe.clone();
@@ -32,7 +43,7 @@ pub(crate) fn run(layout: &Layout) -> Outcome {
             steps.extend([interfaces, interfaces::python_step(layout, &upstream), ros::prefix_step(layout, &upstream)]);
         }
     }
-    take(layout, steps)
+    Ok(steps)
 }
 
 /// Takes some steps in `.deps`, those that are due.

@@ -1,5 +1,7 @@
 //! Long runs of tests that CI runs a small sample of.
 
+mod ros;
+
 use std::fs;
 
 use clap::ValueEnum;
@@ -36,23 +38,32 @@ pub(crate) enum Soak {
     FuzzMcap,
     /// Random bytes, read as an SQLite file or as the metadata of a bag
     FuzzBags,
+    /// The node under ten arrays a second, while subscribers come and go: memory, lost answers, latency; the number is how many minutes
+    Load,
+    /// The node behind a link of 200 ms and 5 % loss each way, steady for so many seconds, then cut twice
+    Link,
 }
 
-pub(crate) fn run(layout: &Layout, name: Soak, amount: u32) -> Outcome {
+const CASES: u32 = 1000;
+
+pub(crate) fn run(layout: &Layout, name: Soak, amount: Option<u32>) -> Outcome {
+    let cases = amount.unwrap_or(CASES);
     match name {
-        Soak::Plans => run_test(layout, "planner", "random_plans", amount),
-        Soak::Handovers => run_test(layout, "planner", "handover", amount),
-        Soak::Executions => run_test(layout, "mujoco-sim", "random_executions", amount),
-        Soak::Shuffled => run_test(layout, "planner", "shuffled_plans", amount),
-        Soak::Orders => run_test(layout, "reorder", "random_orders", amount),
-        Soak::Certified => run_test(layout, "reorder", "certified_orders", amount),
-        Soak::FuzzOrders => fuzz(layout, "orders", amount),
-        Soak::Replay => run_test(layout, "reorder-cli", "replay", amount),
-        Soak::FuzzTables => fuzz(layout, "tables", amount),
-        Soak::FuzzTracks => fuzz(layout, "tracks", amount),
-        Soak::FuzzMessages => fuzz(layout, "messages", amount),
-        Soak::FuzzMcap => fuzz(layout, "mcap", amount),
-        Soak::FuzzBags => fuzz(layout, "bags", amount),
+        Soak::Load => ros::load(layout, amount.unwrap_or(10)),
+        Soak::Link => ros::link(layout, amount.unwrap_or(60)),
+        Soak::Plans => run_test(layout, "planner", "random_plans", cases),
+        Soak::Handovers => run_test(layout, "planner", "handover", cases),
+        Soak::Executions => run_test(layout, "mujoco-sim", "random_executions", cases),
+        Soak::Shuffled => run_test(layout, "planner", "shuffled_plans", cases),
+        Soak::Orders => run_test(layout, "reorder", "random_orders", cases),
+        Soak::Certified => run_test(layout, "reorder", "certified_orders", cases),
+        Soak::FuzzOrders => fuzz(layout, "orders", cases),
+        Soak::FuzzTables => fuzz(layout, "tables", cases),
+        Soak::Replay => run_test(layout, "reorder-cli", "replay", cases),
+        Soak::FuzzTracks => fuzz(layout, "tracks", cases),
+        Soak::FuzzMessages => fuzz(layout, "messages", cases),
+        Soak::FuzzMcap => fuzz(layout, "mcap", cases),
+        Soak::FuzzBags => fuzz(layout, "bags", cases),
     }
 }
 

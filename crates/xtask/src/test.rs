@@ -12,7 +12,7 @@ pub(crate) fn lint(layout: &Layout) -> Outcome {
 }
 
 pub(crate) fn test(layout: &Layout) -> Outcome {
-    setup::run(layout)?;
+    setup::run_for_tests(layout)?;
     if has_nextest(layout) {
         run(layout.cargo().args(["nextest", "run", "--workspace"]))?;
     } else {

@@ -4,7 +4,7 @@ use cargo_metadata::{Metadata, MetadataCommand};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-const ALL: &[&str] = &["se3-geom", "reorder", "manipulator", "pose-bag", "planner", "mujoco-sim"];
+const ALL: &[&str] = &["se3-geom", "reorder", "manipulator", "pose-bag", "planner", "report", "mujoco-sim"];
 
 /// The arrows of the architecture, tests and build scripts included. A new crate needs a row.
 const MAY_DEPEND_ON: &[(&str, &[&str])] = &[
@@ -13,10 +13,11 @@ const MAY_DEPEND_ON: &[(&str, &[&str])] = &[
     ("manipulator", &["se3-geom"]),
     ("pose-bag", &["se3-geom"]),
     ("planner", &["se3-geom", "reorder", "manipulator", "pose-bag"]),
+    ("report", &["planner"]),
     ("mujoco-sim", &["planner"]),
     ("mujoco-arm", &["planner", "mujoco-sim"]),
     ("reorder-node", &["planner"]),
-    ("reorder-cli", &["planner", "pose-bag"]),
+    ("reorder-cli", &["planner", "pose-bag", "report"]),
     ("xtask", &[]),
     ("end-to-end", ALL),
 ];

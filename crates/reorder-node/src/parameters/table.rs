@@ -61,6 +61,11 @@ pub(crate) static TABLE: &[Declaration] = &[
         "How long poses in another frame than the robot's base wait for /tf to say where that is at their stamp.",
     ),
     row(
+        "max_poses",
+        Kind::Count { range: [2, 1_000_000], place: |p| &mut p.config.max_poses },
+        "More poses at a time are refused: their plan would take long, and nothing else is planned meanwhile.",
+    ),
+    row(
         "metres_per_radian",
         Kind::Real { range: [1e-6, 1e6], place: |p| &mut p.config.metres_per_radian },
         "One radian counts as much as this many metres when poses are compared. It changes the order, so it is reported.",

@@ -110,8 +110,8 @@ fn the_parameter_file_is_that_of_the_table() {
     let file = include_str!("../../../../config/reorder.yaml");
     assert_eq!(file, yaml::defaults(), "run `target/debug/reorder_node --parameters > config/reorder.yaml`");
     let document: serde_yaml::Value = serde_yaml::from_str(file).unwrap();
-    let parameters = document["reorder"]["ros__parameters"].as_mapping().unwrap();
+    let parameters = document["/**"]["ros__parameters"].as_mapping().unwrap();
     let count: usize = parameters.values().map(|value| value.as_mapping().map_or(1, serde_yaml::Mapping::len)).sum();
     assert_eq!(count, TABLE.len());
-    assert_eq!(document["reorder"]["ros__parameters"]["timing"]["rate_hz"].as_f64(), Some(100.0));
+    assert_eq!(document["/**"]["ros__parameters"]["timing"]["rate_hz"].as_f64(), Some(100.0));
 }

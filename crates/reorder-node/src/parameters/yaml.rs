@@ -9,8 +9,8 @@ const WIDTH: usize = 130;
 /// The parameter file that changes nothing.
 pub(crate) fn defaults() -> String {
     let mut text = String::from(
-        "# Parameters of the node `reorder`. Every value below is the default. Unknown names are refused. Written by\n\
-         # `reorder_node --parameters`; `ros2 param describe` says the same.\nreorder:\n  ros__parameters:\n",
+        "# Parameters of the node, whatever its name and namespace. Every value below is the default. Unknown names are refused. Written\n\
+         # by `reorder_node --parameters`; `ros2 param describe` says the same.\n/**:\n  ros__parameters:\n",
     );
     let mut group = "";
     for declaration in TABLE {

@@ -6,7 +6,7 @@ use r2r::{ActionClientGoal, ServiceRequest};
 
 use super::Shell;
 use crate::diagnostics::{Level, Progress};
-use crate::execution::{End, Event, What};
+use crate::execution::{CONTROLLER_TIMEOUT, End, Event, What};
 
 impl Shell {
     /// Takes up what becomes of a goal; an older one than the last is nobody's business any more.
@@ -25,10 +25,14 @@ impl Shell {
                 *progress = Progress::new("the controller executes the trajectory");
                 self.goal.1 = Some(goal);
             }
+            What::Overdue => {
+                progress.level = Level::Warn;
+                progress.message = "the trajectory should have ended, and the controller says nothing of it".into();
+            }
             What::NotSent(why) => fail(progress, format!("the trajectory was not sent: {why}")),
             What::Rejected => fail(progress, "the controller rejected the trajectory".into()),
             What::Ended(end) => {
-                self.goal.1 = None;
+                (self.goal.1, progress.level) = (None, Level::Ok);
                 match end {
                     End::Succeeded => progress.message = "the trajectory was executed".into(),
                     End::Canceled => progress.message = "the trajectory was cancelled".into(),
@@ -37,10 +41,10 @@ impl Shell {
                 }
             }
         }
-        if progress.level == Level::Ok {
-            self.log.info(&progress.message);
-        } else {
-            self.log.error(&progress.message);
+        match progress.level {
+            Level::Ok => self.log.info(&progress.message),
+            Level::Warn => self.log.warn(&progress.message),
+            Level::Error | Level::Stale => self.log.error(&progress.message),
         }
         self.report();
     }
@@ -73,6 +77,9 @@ fn fail(progress: &mut Progress, message: String) {
     (progress.level, progress.message) = (Level::Error, message);
 }
 
-pub(super) async fn cancelled(goal: &ActionClientGoal<FollowJointTrajectory::Action>) -> r2r::Result<()> {
-    goal.cancel()?.await
+/// Asks the controller to give a goal up; why it does not.
+pub(super) async fn cancelled(goal: &ActionClientGoal<FollowJointTrajectory::Action>) -> Result<(), String> {
+    let answer = goal.cancel().map_err(|error| error.to_string())?;
+    let answered = tokio::time::timeout(CONTROLLER_TIMEOUT, answer).await;
+    answered.map_err(|_| "it does not answer".to_owned())?.map_err(|error| error.to_string())
 }

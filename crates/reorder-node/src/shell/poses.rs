@@ -27,6 +27,8 @@ impl Shell {
     pub(super) fn collect(&mut self, at: Instant, message: PoseStamped) {
         let frame = message.header.frame_id.clone();
         match self.collecting.take(at, message) {
+            // A source that never falls quiet would fill the memory: the set is refused as too large, and the next begins.
+            Taken::Added if self.collecting.len() > self.parameters.config.max_poses => self.finish_collecting(),
             Taken::Added => {}
             Taken::Repeated => self.odd_poses.repeated += 1,
             Taken::Corrected => self.odd_poses.corrected += 1,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use mujoco_sim::{ContactEvent, Execution, PoseErrors, Sweep};
+use mujoco_sim::{ContactEvent, Execution, PoseErrors, Sample, Sweep};
 use serde::Serialize;
 
 /// The JSON object of the command.
@@ -22,7 +22,18 @@ pub(crate) struct Summary {
     max_torque_ratio: f64,
     saturated_steps: usize,
     joints: Vec<Joint>,
+    tracking: Tracking,
 }
+
+/// The tracking error over time, in a thousand rows at most.
+#[derive(Debug, Serialize)]
+struct Tracking {
+    time_s: Vec<f64>,
+    /// For each joint, in their order above: of all errors until the next time the one that is greatest in size.
+    error_rad: Vec<Vec<f32>>,
+}
+
+const TRACKING_ROWS: usize = 1000;
 
 /// What is met along the trajectory as it was planned.
 #[derive(Debug, Serialize)]
@@ -75,6 +86,7 @@ impl Summary {
             max_torque_ratio: execution.max_torque_ratio,
             saturated_steps: execution.saturated_steps,
             joints: joints.collect(),
+            tracking: Tracking::of(execution),
         }
     }
 
@@ -116,6 +128,21 @@ fn list(text: &mut String, events: &[Contact]) {
         let how = if *depth_max_m >= 0.0 { "deep" } else { "apart" };
         let depth_mm = 1e3 * depth_max_m.abs();
         let _ = writeln!(text, "  {one} and {other}, {from_s:.3} to {until_s:.3} s, {depth_mm:.2} mm {how}");
+    }
+}
+
+impl Tracking {
+    fn of(execution: &Execution) -> Self {
+        let rows = execution.samples.chunks(execution.samples.len().div_ceil(TRACKING_ROWS).max(1));
+        let greatest = |row: &[Sample], joint: usize| {
+            let errors = row.iter().map(|sample| sample.position[joint] - sample.reference[joint]);
+            errors.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0) as f32
+        };
+        let of_joint = |joint| rows.clone().map(|row| greatest(row, joint)).collect();
+        Self {
+            time_s: rows.clone().map(|row| row[0].time_s).collect(),
+            error_rad: (0..execution.joints.len()).map(of_joint).collect(),
+        }
     }
 }
 
