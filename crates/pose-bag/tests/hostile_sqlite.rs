@@ -62,6 +62,22 @@ fn what_a_killed_recorder_left_in_its_log_is_read() {
 }
 
 #[test]
+fn a_recording_that_is_in_its_log_alone_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.db3");
+    let database = Connection::open(&path).unwrap();
+    database.execute_batch("PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 0; BEGIN;").unwrap();
+    database.execute_batch(&format!("{TABLES}{MESSAGES}")).unwrap();
+    for k in 0..500 {
+        let data = encode(&stamped("base", k as i64, &pose(k))).unwrap();
+        database.execute("INSERT INTO messages VALUES (NULL, 1, ?1, ?2)", (k as i64, data)).unwrap();
+    }
+    database.execute_batch("COMMIT").unwrap();
+    assert!(fs::metadata(&path).unwrap().len() < 500 * 84, "the poses are in the log");
+    assert_same(&read_poses(&path, None).unwrap()[0].poses, &poses(500));
+}
+
+#[test]
 fn a_cut_is_an_error_and_what_is_whole_is_recovered() {
     let folder = tempfile::tempdir().unwrap();
     let count = 2000;
