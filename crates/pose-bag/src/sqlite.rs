@@ -133,7 +133,8 @@ fn log_size(path: &Path) -> u64 {
 fn open(path: &Path, size: u64) -> Result<Connection, Fault> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
     // Immutable, nothing is written beside the file. A log that a recorder could not merge any more is read along with it.
-    let mut name = String::from("file:");
+    // What follows two slashes would be taken for a host.
+    let mut name = String::from(if path.is_absolute() { "file://" } else { "file:" });
     for &byte in path.as_os_str().as_encoded_bytes() {
         // SQLite takes names as they are but for what has a meaning in a URI.
         match byte {

@@ -62,6 +62,16 @@ fn what_a_killed_recorder_left_in_its_log_is_read() {
 }
 
 #[test]
+fn a_path_with_doubled_slashes_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), 3);
+    for slashes in ["/", "//"] {
+        let doubled = format!("{slashes}{}", path.display());
+        assert_same(&read_poses(doubled, None).unwrap()[0].poses, &poses(3));
+    }
+}
+
+#[test]
 fn a_recording_that_is_in_its_log_alone_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.db3");
