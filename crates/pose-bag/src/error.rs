@@ -211,6 +211,20 @@ pub enum BagError {
         /// Frame of this message.
         found: String,
     },
+    /// A topic changes the type of its messages, so that what belongs together is unknown.
+    #[error("{file}, topic {topic}, message {message} (counted from 0): it is a {found} after those of {expected}")]
+    MixedTypes {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// Type of the messages before.
+        expected: String,
+        /// Type of this message.
+        found: String,
+    },
     /// The file does not begin like an MCAP file.
     #[error("{file} is not an MCAP file: its first bytes are not the MCAP magic")]
     NotMcap {

@@ -23,16 +23,26 @@ pub(crate) fn read_bag(bag: &BagReader, selection: &Selection) -> Result<(Vec<Po
         Some(topic) => topic.clone(),
     };
     let mut collector = Collector { selection, sets: Vec::new(), singles: Vec::new(), frame: None, pairs: Vec::new() };
-    let mut is_there = false;
+    let mut topic_type: Option<String> = None;
     let losses = bag.for_each(&mut |message| {
         if message.topic() != topic {
             return Ok(());
         }
-        let Some(kind) = Kind::of(message.message_type()) else { return Err(not_poses(bag, &topic)?) };
-        is_there = true;
+        let found = message.message_type();
+        let expected = topic_type.get_or_insert_with(|| found.to_owned());
+        if expected != found {
+            return Err(BagError::MixedTypes {
+                file: message.file.to_owned(),
+                topic: topic.clone(),
+                message: message.index(),
+                expected: expected.clone(),
+                found: found.to_owned(),
+            });
+        }
+        let Some(kind) = Kind::of(found) else { return Err(not_poses(bag, &topic)?) };
         collector.take(kind, message)
     })?;
-    if !is_there {
+    if topic_type.is_none() {
         return Err(losses.into_iter().next().map_or_else(|| not_poses(bag, &topic), Ok)?);
     }
     let sets = collector.into_sets(bag, &topic)?;

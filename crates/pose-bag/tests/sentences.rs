@@ -6,9 +6,9 @@ mod support;
 use std::fs;
 use std::path::PathBuf;
 
-use pose_bag::msg::{PoseArray, PoseStamped};
-use pose_bag::{BagWriter, Table, read_poses, read_table};
-use support::{array, poses, stamped};
+use pose_bag::msg::{Message, Path, PoseArray, PoseStamped, Text};
+use pose_bag::{BagWriter, Table, encode, read_poses, read_table};
+use support::{array, header, poses, stamped};
 use tempfile::TempDir;
 
 const HEADER: &str = "x,y,z,qx,qy,qz,qw\n";
@@ -164,6 +164,40 @@ fn frames_and_types_that_change() {
         folder.sentence(read_poses(folder.path("bag.mcap"), None)),
         "bag.mcap, topic /tool, message 1 (counted from 0): the frame is \"world\" after \"base\""
     );
+}
+
+/// A bag with messages of several types on `/poses`, which [`BagWriter`] refuses.
+fn mixed_bag(folder: &Folder, messages: &[(&str, Vec<u8>)]) -> PathBuf {
+    let path = folder.path("mixed.mcap");
+    let mut writer = mcap::Writer::new(fs::File::create(&path).unwrap()).unwrap();
+    for (k, (message_type, data)) in (0..).zip(messages) {
+        let schema = writer.add_schema(message_type, "ros2msg", b"").unwrap();
+        let channel_id = writer.add_channel(schema, "/poses", "cdr", &Default::default()).unwrap();
+        let header = mcap::records::MessageHeader { channel_id, sequence: k, log_time: k.into(), publish_time: 0 };
+        writer.write_to_known_channel(&header, data).unwrap();
+    }
+    writer.finish().unwrap();
+    path
+}
+
+#[test]
+fn a_topic_of_two_types_is_refused_whichever_comes_first() {
+    let folder = Folder::new();
+    let single = (PoseStamped::TYPE, encode(&stamped("base", 0, &poses(1)[0])).unwrap());
+    let array = (PoseArray::TYPE, encode(&array("base", &poses(3))).unwrap());
+    let path = Path { header: header("base", 0), poses: vec![stamped("base", 0, &poses(1)[0])] };
+    let path = (Path::TYPE, encode(&path).unwrap());
+    let text = (Text::TYPE, encode(&Text { data: "pose".into() }).unwrap());
+    for (first, second) in [(&array, &single), (&path, &single), (&single, &array), (&array, &path), (&array, &text)] {
+        let bag = mixed_bag(&folder, &[first.clone(), first.clone(), second.clone()]);
+        assert_eq!(
+            folder.sentence(read_poses(bag, None)),
+            format!(
+                "mixed.mcap, topic /poses, message 2 (counted from 0): it is a {} after those of {}",
+                second.0, first.0
+            )
+        );
+    }
 }
 
 /// A bag written by crate `mcap` alone, so that encoding and bytes may be wrong.
