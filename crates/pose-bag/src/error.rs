@@ -211,6 +211,24 @@ pub enum BagError {
         /// Frame of this message.
         found: String,
     },
+    /// A pose of a path is given in another frame than the path.
+    #[error(
+        "{file}, topic {topic}, message {message}, pose {pose} (counted from 0): the frame is {found:?} in a path of {expected:?}"
+    )]
+    MixedPath {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// Pose in the message, from 0.
+        pose: usize,
+        /// Frame of the path, or of its poses before where the path names none.
+        expected: String,
+        /// Frame of this pose.
+        found: String,
+    },
     /// A topic changes the type of its messages, so that what belongs together is unknown.
     #[error("{file}, topic {topic}, message {message} (counted from 0): it is a {found} after those of {expected}")]
     MixedTypes {

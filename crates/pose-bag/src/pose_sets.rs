@@ -143,7 +143,8 @@ impl Collector<'_> {
                 self.take_set(message, array.header, &array.poses, None)
             }
             Kind::Path => {
-                let path: msg::Path = message.decode()?;
+                let mut path: msg::Path = message.decode()?;
+                path.header.frame_id = frame_of(message, &path)?;
                 let stamps_ns = path.poses.iter().map(|pose| pose.header.stamp.to_nanos()).collect();
                 let poses: Vec<_> = path.poses.iter().map(|pose| pose.pose).collect();
                 self.take_set(message, path.header, &poses, Some(stamps_ns))
@@ -259,6 +260,24 @@ impl Collector<'_> {
             }
         }
         Ok(sets)
+    }
+}
+
+/// The frame of a path and of every pose in it; an empty one says nothing.
+fn frame_of(message: &BagMessage<'_>, path: &msg::Path) -> Result<String, BagError> {
+    let of_poses = || path.poses.iter().map(|pose| &pose.header.frame_id);
+    let mut named = [&path.header.frame_id].into_iter().chain(of_poses()).filter(|frame| !frame.is_empty());
+    let expected = named.next().cloned().unwrap_or_default();
+    match of_poses().enumerate().find(|(_, frame)| !frame.is_empty() && **frame != expected) {
+        None => Ok(expected),
+        Some((pose, found)) => Err(BagError::MixedPath {
+            file: message.file.to_owned(),
+            topic: message.topic().to_owned(),
+            message: message.index(),
+            pose,
+            expected,
+            found: found.clone(),
+        }),
     }
 }
 

@@ -200,6 +200,30 @@ fn a_topic_of_two_types_is_refused_whichever_comes_first() {
     }
 }
 
+#[test]
+fn poses_of_a_path_in_another_frame() {
+    let folder = Folder::new();
+    let read = |frame: &str, of_poses: [&str; 3]| {
+        let poses = of_poses.iter().zip(poses(3)).map(|(frame, pose)| stamped(frame, 0, &pose)).collect();
+        let mut bag = BagWriter::create(folder.path("bag.mcap")).unwrap();
+        bag.write("/path", 0, &Path { header: header(frame, 0), poses }).unwrap();
+        bag.finish().unwrap();
+        read_poses(folder.path("bag.mcap"), None)
+    };
+    let place = "bag.mcap, topic /path, message 0, pose";
+    assert_eq!(
+        folder.sentence(read("base", ["base", "camera", "base"])),
+        format!("{place} 1 (counted from 0): the frame is \"camera\" in a path of \"base\"")
+    );
+    assert_eq!(
+        folder.sentence(read("", ["", "base", "camera"])),
+        format!("{place} 2 (counted from 0): the frame is \"camera\" in a path of \"base\"")
+    );
+    for (frame, of_poses) in [("base", ["", "base", ""]), ("", ["", "base", "base"])] {
+        assert_eq!(read(frame, of_poses).unwrap()[0].frame_id, "base");
+    }
+}
+
 /// A bag written by crate `mcap` alone, so that encoding and bytes may be wrong.
 fn raw_bag(folder: &Folder, schema: &str, encoding: &str, data: &[u8]) -> PathBuf {
     let path = folder.path("raw.mcap");
