@@ -322,6 +322,16 @@ pub enum BagError {
         /// The pairs that are there, as `parent:child`.
         pairs: String,
     },
+    /// No topic has the transforms that were asked for.
+    #[error("{file} has no transforms {frames}; its topics of transforms: {topics}")]
+    NoTransforms {
+        /// The bag.
+        file: String,
+        /// The pair asked for, as `parent:child`.
+        frames: String,
+        /// Topics of type TFMessage that are there.
+        topics: String,
+    },
     /// What should be written is already there.
     #[error("{file} already exists and is not overwritten")]
     AlreadyExists {

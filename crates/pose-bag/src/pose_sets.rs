@@ -18,9 +18,10 @@ const MAX_PAIRS: usize = 100;
 ///
 /// Messages are taken in the order in which they were recorded.
 pub(crate) fn read_bag(bag: &BagReader, selection: &Selection) -> Result<(Vec<PoseSet>, Vec<BagError>), BagError> {
-    let topic = match &selection.topic {
-        None => choose(bag)?,
-        Some(topic) => topic.clone(),
+    let topic = match (&selection.topic, &selection.frames) {
+        (Some(topic), _) => topic.clone(),
+        (None, Some(frames)) => choose_transforms(bag, frames)?,
+        (None, None) => choose(bag)?,
     };
     let mut collector = Collector { selection, sets: Vec::new(), singles: Vec::new(), frame: None, pairs: Vec::new() };
     let mut topic_type: Option<String> = None;
@@ -109,6 +110,43 @@ fn choose(bag: &BagReader) -> Result<String, BagError> {
         (Some((topic, _)), None) => Ok((*topic).clone()),
         _ => Err(BagError::SeveralPoseTopics { file: file(), topics: list(&topics, |of| Kind::of(of).is_some()) }),
     }
+}
+
+/// The topic with the transforms between two frames.
+fn choose_transforms(bag: &BagReader, frames: &(String, String)) -> Result<String, BagError> {
+    let (mut topics, losses) = bag.topics()?;
+    topics.retain(|_, message_type| message_type == msg::TfMessage::TYPE);
+    let mut found = topics.clone();
+    // Of a single one it is said later which pairs it has.
+    if topics.len() > 1 {
+        found.clear();
+        bag.for_each(&mut |message| {
+            let Some((topic, of)) =
+                topics.get_key_value(message.topic()).filter(|(topic, _)| !found.contains_key(*topic))
+            else {
+                return Ok(());
+            };
+            if message.decode::<msg::TfMessage>()?.transforms.iter().any(|transform| pair(transform) == *frames) {
+                found.insert(topic.clone(), of.clone());
+            }
+            Ok(())
+        })?;
+    }
+    let file = bag.name().to_owned();
+    match found.len() {
+        0 => Err(losses.into_iter().next().unwrap_or_else(|| {
+            let (frames, topics) = (format!("{}:{}", frames.0, frames.1), list(&topics, |_| true));
+            BagError::NoTransforms { file, frames, topics }
+        })),
+        1 => Ok(found.into_keys().collect()),
+        _ => Err(BagError::SeveralPoseTopics { file, topics: list(&found, |_| true) }),
+    }
+}
+
+/// Parent and child frame, without the leading slashes of old.
+fn pair(transform: &msg::TransformStamped) -> (String, String) {
+    let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
+    (bare(&transform.header.frame_id), bare(&transform.child_frame_id))
 }
 
 fn list(topics: &BTreeMap<String, String>, is_listed: impl Fn(&str) -> bool) -> String {
@@ -210,8 +248,7 @@ impl Collector<'_> {
     fn take_transforms(&mut self, message: &BagMessage<'_>) -> Result<(), BagError> {
         let transforms = message.decode::<msg::TfMessage>()?.transforms;
         for (index, transform) in transforms.into_iter().enumerate() {
-            let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
-            let pair = (bare(&transform.header.frame_id), bare(&transform.child_frame_id));
+            let pair = pair(&transform);
             if self.pairs.len() < MAX_PAIRS && !self.pairs.contains(&pair) {
                 self.pairs.push(pair.clone());
             }
