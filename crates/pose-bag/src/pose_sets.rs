@@ -11,7 +11,7 @@ use crate::channel::BagMessage;
 use crate::msg::{self, Message};
 use crate::pose_set::{Grouping, Origin, PoseSet, Selection};
 
-/// Frame pairs that are told apart.
+/// Frame pairs to choose from that are told.
 const MAX_PAIRS: usize = 100;
 
 /// Poses of one topic of a bag, and what of the bag is lost.
@@ -265,7 +265,7 @@ impl Collector<'_> {
     fn into_sets(mut self, bag: &BagReader, topic: &str) -> Result<Vec<PoseSet>, BagError> {
         let is_undecided = match &self.selection.frames {
             None => self.pairs.len() > 1,
-            Some(wanted) => !self.pairs.is_empty() && !self.pairs.contains(wanted),
+            Some(_) => !self.pairs.is_empty() && self.singles.is_empty(),
         };
         if is_undecided {
             let pairs: Vec<_> = self.pairs.iter().map(|(parent, child)| format!("{parent}:{child}")).collect();

@@ -182,6 +182,22 @@ fn frames_that_are_named_mean_the_transforms_that_have_them() {
 }
 
 #[test]
+fn a_pair_of_frames_is_found_among_any_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hands.mcap");
+    let mut bag = BagWriter::create(&path).unwrap();
+    for k in 0..3 {
+        let mut transforms: Vec<_> = (0..150).map(|link| transform("hand", &format!("link{link}"), 9)).collect();
+        transforms.push(transform("base", "tool", k));
+        bag.write("/tf", k as u64, &TfMessage { transforms }).unwrap();
+    }
+    bag.finish().unwrap();
+    assert_same(&recover_poses(&path, &select("base", "tool")).unwrap().0[0].poses, &poses(3));
+    let error = recover_poses(&path, &select("base", "camera")).unwrap_err().to_string();
+    assert!(error.contains("topic /tf: name one of the frame pairs hand:link0, "), "{error}");
+}
+
+#[test]
 fn single_poses_are_taken_together_by_window_or_gap() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("single.mcap");
