@@ -1,6 +1,6 @@
 //! Messages of an MCAP file, linked to their topics.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::Read;
 
 use mcap::records::op;
@@ -22,8 +22,8 @@ pub(crate) fn read_mcap(
     visit: &mut Visit<'_>,
     lost: &mut dyn FnMut(u64, Fault),
 ) -> Result<(), Fault> {
-    let mut linker =
-        Linker { file, counts, visit, lost, schemas: HashMap::new(), channels: HashMap::new(), messages_read: 0 };
+    let (schemas, channels, unknown) = (HashMap::new(), HashMap::new(), HashSet::new());
+    let mut linker = Linker { file, counts, visit, lost, schemas, channels, unknown, messages_read: 0 };
     let mut start = Vec::new();
     source.by_ref().take(mcap::MAGIC.len() as u64).read_to_end(&mut start)?;
     if start.is_empty() {
@@ -49,6 +49,8 @@ struct Linker<'a, 'v> {
     lost: &'a mut dyn FnMut(u64, Fault),
     schemas: HashMap<u16, Schema>,
     channels: HashMap<u16, Channel>,
+    /// Channels of which it was said that their messages are lost.
+    unknown: HashSet<u16>,
     messages_read: u64,
 }
 
@@ -84,7 +86,9 @@ impl Linker<'_, '_> {
     fn add_channel(&mut self, id: u16, schema_id: u16, topic: String, encoding: String) -> Result<(), Fault> {
         let none = Schema::default();
         let Some(schema) = self.schemas.get(&schema_id).or(Some(&none).filter(|_| schema_id == 0)) else {
-            return Err(Fault::Corrupt(format!("a topic has the unknown schema {schema_id}")));
+            // The record that defined it is lost; those of others are as good as before.
+            self.lost(format!("a topic has the unknown schema {schema_id}"));
+            return Ok(());
         };
         let channel = self.counts.channel(topic, encoding, schema)?;
         let is_same = |known: &Channel| {
@@ -104,7 +108,10 @@ impl Linker<'_, '_> {
 
     fn message(&mut self, id: u16, log_time_ns: u64, data: &[u8]) -> Result<(), Fault> {
         let Some(channel) = self.channels.get(&id) else {
-            return Err(Fault::Corrupt(format!("a message belongs to the unknown channel {id}")));
+            if self.unknown.insert(id) {
+                self.lost(format!("messages belong to the unknown channel {id}"));
+            }
+            return Ok(());
         };
         BagMessage { file: self.file, channel, log_time_ns, data }.hand_to(self.visit)?;
         self.messages_read += 1;
