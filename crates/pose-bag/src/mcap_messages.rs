@@ -6,6 +6,7 @@ use std::io::Read;
 use mcap::records::op;
 
 use crate::BagError;
+use crate::bounded::Budget;
 use crate::channel::{BagMessage, Channel, Counts, Schema, Visit};
 use crate::mcap_records::{Fault, Records, read_file};
 
@@ -14,16 +15,19 @@ pub(crate) fn has_magic(start: &[u8]) -> bool {
     start.starts_with(mcap::MAGIC)
 }
 
-/// Hands on every message, in file order. `lost` is told how many messages came before what is lost, and why it is.
+/// Hands on every message, in file order. `lost` is told how many messages came before what is lost, and why it is. With
+/// `packed_messages` each is compressed by itself.
 pub(crate) fn read_mcap(
     source: &mut impl Read,
+    packed_messages: bool,
     file: &str,
     counts: &mut Counts,
     visit: &mut Visit<'_>,
     lost: &mut dyn FnMut(u64, Fault),
 ) -> Result<(), Fault> {
     let (schemas, channels, unknown) = (HashMap::new(), HashMap::new(), HashSet::new());
-    let mut linker = Linker { file, counts, visit, lost, schemas, channels, unknown, messages_read: 0 };
+    let unpack = packed_messages.then(Default::default);
+    let mut linker = Linker { file, unpack, counts, visit, lost, schemas, channels, unknown, messages_read: 0 };
     let mut start = Vec::new();
     source.by_ref().take(mcap::MAGIC.len() as u64).read_to_end(&mut start)?;
     if start.is_empty() {
@@ -44,6 +48,8 @@ pub(crate) fn read_mcap(
 
 struct Linker<'a, 'v> {
     file: &'a str,
+    /// Where messages are decompressed, if they are compressed.
+    unpack: Option<(Budget, Vec<u8>)>,
     counts: &'a mut Counts,
     visit: &'a mut Visit<'v>,
     lost: &'a mut dyn FnMut(u64, Fault),
@@ -112,6 +118,16 @@ impl Linker<'_, '_> {
                 self.lost(format!("messages belong to the unknown channel {id}"));
             }
             return Ok(());
+        };
+        let data = match &mut self.unpack {
+            None => data,
+            Some((budget, unpacked)) => {
+                if let Err(error) = budget.unpack_message(data, unpacked) {
+                    self.lost(format!("a message cannot be decompressed: {error}"));
+                    return Ok(());
+                }
+                unpacked
+            }
         };
         BagMessage { file: self.file, channel, log_time_ns, data }.hand_to(self.visit)?;
         self.messages_read += 1;

@@ -36,10 +36,10 @@ pub(crate) fn read_sqlite(
     visit: &mut Visit<'_>,
     lost: &mut dyn FnMut(u64, Fault),
 ) -> Result<(), Fault> {
-    let mut reader = Reader { file, packed_messages, messages_read: 0, visit };
+    let mut reader = Reader { file, packed_messages, messages_read: 0, visit, lost };
     match reader.read(path, counts) {
         Err(fault @ Fault::Corrupt(_)) => {
-            lost(reader.messages_read, fault);
+            (reader.lost)(reader.messages_read, fault);
             Ok(())
         }
         read => read,
@@ -51,6 +51,7 @@ struct Reader<'a, 'v> {
     packed_messages: bool,
     messages_read: u64,
     visit: &'a mut Visit<'v>,
+    lost: &'a mut dyn FnMut(u64, Fault),
 }
 
 impl Reader<'_, '_> {
@@ -86,9 +87,11 @@ impl Reader<'_, '_> {
                 return Err(Fault::Corrupt(format!("a message belongs to the unknown topic {topic}")));
             };
             let data = if self.packed_messages {
-                let unpacking = budget.unpack_message(data, &mut unpacked);
-                unpacking
-                    .map_err(|error| Fault::Corrupt(format!("message {number} cannot be decompressed: {error}")))?;
+                if let Err(error) = budget.unpack_message(data, &mut unpacked) {
+                    let why = format!("message {number} cannot be decompressed: {error}");
+                    (self.lost)(self.messages_read, Fault::Corrupt(why));
+                    continue;
+                }
                 &unpacked
             } else {
                 data

@@ -163,6 +163,32 @@ fn messages_of_a_lost_channel_are_lost_alone() {
     }
 }
 
+#[test]
+fn a_message_that_cannot_be_decompressed_is_lost_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut records = tool_channel();
+    for k in 0..20 {
+        let data = encode(&support::stamped("base", 0, &support::pose(k))).unwrap();
+        let mut packed = zstd::bulk::compress(&data, 1).unwrap();
+        packed[0] ^= u8::from(k == 19);
+        records.extend(message_record(1, &packed));
+        packed[0] ^= 1;
+        records.extend(message_record(1, &packed).repeat(usize::from(k == 10)));
+    }
+    fs::write(folder.path().join("bag.mcap"), file_of(&records)).unwrap();
+    let metadata = "rosbag2_bagfile_information: {version: 9, storage_identifier: mcap, compression_mode: MESSAGE, \
+                    compression_format: zstd, relative_file_paths: [bag.mcap]}";
+    fs::write(folder.path().join("metadata.yaml"), metadata).unwrap();
+    let (sets, losses) = recover_poses(folder.path(), &Selection::default()).unwrap();
+    support::assert_same(&sets[0].poses, &support::poses(19));
+    let said: Vec<_> = losses.iter().map(ToString::to_string).collect();
+    assert_eq!(said.len(), 2, "{said:?}");
+    for (said, before) in said.iter().zip([11, 19]) {
+        let expected = format!("after {before} readable messages: a message cannot be decompressed");
+        assert!(said.contains(&expected), "{said}");
+    }
+}
+
 /// A chunk of so many zeros (records of opcode 0 and no length), by zstd, that claims to hold `claimed` bytes.
 fn packed_zeros(zeros: usize, claimed: u64) -> Vec<u8> {
     let packed = zstd::bulk::compress(&vec![0; zeros], 1).unwrap();

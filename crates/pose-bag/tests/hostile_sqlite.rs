@@ -179,6 +179,32 @@ fn metadata_and_packed_files_that_unfold_are_refused() {
     assert!(refusal().contains("message 1 cannot be decompressed: it unpacks to more than"));
 }
 
+#[test]
+fn a_message_that_cannot_be_decompressed_is_lost_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let database = Connection::open(bag(folder.path(), "bag.db3", &format!("{TABLES}{MESSAGES}"), 0)).unwrap();
+    for k in 0..20 {
+        let mut packed = zstd::bulk::compress(&encode(&stamped("base", 0, &pose(k))).unwrap(), 1).unwrap();
+        packed[0] ^= u8::from(k == 19);
+        let insert = |data: &[u8]| {
+            database.execute("INSERT INTO messages VALUES (NULL, 1, ?1, ?2)", (k as i64, data)).unwrap();
+        };
+        insert(&packed);
+        if k == 10 {
+            insert(b"no zstd");
+        }
+    }
+    let metadata = "rosbag2_bagfile_information: {version: 9, storage_identifier: sqlite3, compression_mode: MESSAGE, \
+                    compression_format: zstd, relative_file_paths: [bag.db3]}";
+    fs::write(folder.path().join("metadata.yaml"), metadata).unwrap();
+    let (sets, losses) = recover_poses(folder.path(), &Selection::default()).unwrap();
+    assert_same(&sets[0].poses, &poses(19));
+    let said: Vec<_> = losses.iter().map(ToString::to_string).collect();
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(said[0].contains("after 11 readable messages: message 12 cannot be decompressed"), "{said:?}");
+    assert!(said[1].contains("after 19 readable messages: message 21 cannot be decompressed"), "{said:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(5), ..ProptestConfig::with_cases(200) })]
 
