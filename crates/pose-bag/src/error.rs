@@ -117,6 +117,18 @@ pub enum BagError {
         /// The value.
         value: f64,
     },
+    /// A stamp of a track is out of range.
+    #[error(
+        "{file}, line {line}: the stamp {stamp} does not fit into 64 bits of nanoseconds (TUM has seconds, EuRoC nanoseconds)"
+    )]
+    StampRange {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// What stands there.
+        stamp: String,
+    },
     /// A line is no pose.
     #[error("{file}, line {line}: {reason}")]
     InvalidPoseInLine {

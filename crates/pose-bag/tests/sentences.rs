@@ -123,6 +123,21 @@ fn euroc() {
 }
 
 #[test]
+fn stamps_that_do_not_fit() {
+    let folder = Folder::new();
+    let does_not_fit = "does not fit into 64 bits of nanoseconds (TUM has seconds, EuRoC nanoseconds)";
+    for stamp in ["1403636579763555584", "-1e10", "9223372036.854775808"] {
+        let text = format!("9223372036.854775807 0 0 0 0 0 0 1\n{stamp} 0 0 0 0 0 0 1\n");
+        let expected = format!("track.tum, line 2: the stamp {stamp} {does_not_fit}");
+        assert_eq!(folder.refusal("track.tum", text), expected);
+    }
+    let header = "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
+    let text = format!("{header}9223372036854775807,0,0,0,1,0,0,0\n9223372036854775808,0,0,0,1,0,0,0\n");
+    let expected = format!("data.csv, line 3: the stamp 9223372036854775808 {does_not_fit}");
+    assert_eq!(folder.refusal("data.csv", text), expected);
+}
+
+#[test]
 fn poses_in_messages() {
     let folder = Folder::new();
     let mut zero = array("base", &poses(3));
