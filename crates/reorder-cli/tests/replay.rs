@@ -262,12 +262,41 @@ fn what_cannot_be_is_said_in_one_sentence() {
         (&["nowhere"], "nowhere: No such file or directory"),
         (&[&bag, &bag], "would both be written as lasa_sine.mcap"),
         (&[&bag, copy.to_str().unwrap(), "-o", "one.mcap"], "one.mcap is one file for 2 bags: name a folder"),
-        (&[copy.to_str().unwrap(), "-o", copy.to_str().unwrap()], "the bag would be written over itself"),
+        (&[copy.to_str().unwrap(), "-o", copy.to_str().unwrap()], "copy.mcap: already an input or another output"),
         (&[&bag, "--topic", "/none"], "has no poses on topic /none"),
     ];
     for (arguments, expected) in cases {
         let (code, said) = refusal_of_replay(arguments);
         assert!(code == 2 && said.contains(expected) && said.lines().count() == 1, "{arguments:?}: {said}");
+    }
+}
+
+/// Every file below, by its bytes.
+fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let of =
+        |path: PathBuf| if path.is_dir() { contents(&path) } else { [(path.clone(), fs::read(path).unwrap())].into() };
+    entries.flat_map(of).collect()
+}
+
+#[test]
+fn no_output_takes_the_place_of_a_file_of_any_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    drawn(&folder.path().join("bag"), "lasa_sine");
+    fs::create_dir_all(folder.path().join("d/sub")).unwrap();
+    drawn(&folder.path().join("d/run.mcap"), "lasa_sine");
+    drawn(&folder.path().join("d/sub/run.mcap"), "lasa_zshape");
+    let before = contents(folder.path());
+    for (input, output, named) in [
+        (path("bag"), path("bag/bag_0.mcap"), path("bag/bag_0.mcap")),
+        (path("bag"), path("d/../bag/bag_0.mcap"), path("d/../bag/bag_0.mcap")),
+        (path("d"), path("d/sub"), path("d/sub/run.mcap")),
+    ] {
+        let (code, said) = refusal_of_replay(&[&input, "-o", &output]);
+        assert_eq!(code, 2, "{said}");
+        assert_eq!(said, format!("reorder: {named}: already an input or another output of this command\n"));
+        assert!(contents(folder.path()) == before, "{output}");
     }
 }
 
