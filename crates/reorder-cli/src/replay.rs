@@ -6,6 +6,7 @@ mod markers;
 mod score;
 mod summary;
 
+use std::collections::HashSet;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::IsTerminal;
@@ -141,7 +142,10 @@ fn task(arguments: &Arguments) -> Result<Task, Failure> {
         |topic: Option<&String>| Selection { topic: topic.cloned(), frames: arguments.frames.clone(), grouping };
     let selections: Vec<Selection> = match arguments.topic.as_slice() {
         [] => vec![selection(None)],
-        topics => topics.iter().map(|topic| selection(Some(topic))).collect(),
+        topics => {
+            let mut seen = HashSet::new();
+            topics.iter().filter(|topic| seen.insert(*topic)).map(|topic| selection(Some(topic))).collect()
+        }
     };
     let robot = arguments.robot.as_deref().map(|name| load_robot(name, arguments.limits.as_deref())).transpose()?;
     let options = Options { topology: arguments.topology.into(), ..Options::default() };

@@ -300,6 +300,18 @@ fn no_output_takes_the_place_of_a_file_of_any_input() {
     }
 }
 
+#[test]
+fn a_topic_that_is_named_twice_is_taken_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("bag.mcap");
+    drawn(&bag, "lasa_sine");
+    let output = folder.path().join("out.mcap");
+    let arguments = ["replay", bag.to_str().unwrap(), "--topic", "/tool", "--topic", "/tool", "--format", "json"];
+    let replayed = json_of(&reorder(&[&arguments[..], &["-o", output.to_str().unwrap()]].concat()));
+    assert_eq!(replayed["bags"][0]["sets"].as_array().unwrap().len(), 1);
+    assert!(topics(&output).contains_key("/reorder/ordered_poses"), "{:?}", topics(&output));
+}
+
 fn statuses(value: &Value) -> Vec<&str> {
     value["bags"].as_array().unwrap().iter().map(|bag| bag["status"].as_str().unwrap()).collect()
 }
