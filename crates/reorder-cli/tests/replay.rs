@@ -9,7 +9,7 @@ use std::process::Output;
 mod support;
 
 use planner::pose_bag::msg::{Header, JointState, MarkerArray, PoseArray, PoseStamped, Time};
-use planner::pose_bag::{BagReader, BagWriter, read_poses};
+use planner::pose_bag::{BagMessage, BagReader, BagWriter, read_poses};
 use planner::se3_geom::Pose;
 use serde_json::{Value, json};
 use support::*;
@@ -310,6 +310,29 @@ fn a_topic_that_is_named_twice_is_taken_once() {
     let replayed = json_of(&reorder(&[&arguments[..], &["-o", output.to_str().unwrap()]].concat()));
     assert_eq!(replayed["bags"][0]["sets"].as_array().unwrap().len(), 1);
     assert!(topics(&output).contains_key("/reorder/ordered_poses"), "{:?}", topics(&output));
+}
+
+#[test]
+fn times_at_the_end_of_the_clock_are_replayed_like_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bags, target) = (folder.path().join("bags"), folder.path().join("out"));
+    fs::create_dir(&bags).unwrap();
+    drawn(&bags.join("early.mcap"), "lasa_sine");
+    let poses = recording("lasa_sine").0.iter().map(Into::into).collect();
+    let mut bag = BagWriter::create(bags.join("late.mcap")).unwrap();
+    bag.write("/scan", u64::MAX, &PoseArray { header: header(0), poses }).unwrap();
+    bag.finish().unwrap();
+    let arguments = ["replay", bags.to_str().unwrap(), "--robot", "ur5e", "-o", target.to_str().unwrap()];
+    let output = reorder(&[&arguments[..], &["--format", "json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(statuses(&json_of(&output)), ["done"; 2]);
+    let mut times = Vec::new();
+    let note = &mut |message: &BagMessage<'_>| {
+        times.push(message.log_time_ns());
+        Ok(())
+    };
+    assert!(BagReader::open(target.join("late.mcap")).unwrap().for_each(note).unwrap().is_empty());
+    assert!(times.len() > 100 && times.iter().all(|&time| time == u64::MAX));
 }
 
 fn statuses(value: &Value) -> Vec<&str> {
