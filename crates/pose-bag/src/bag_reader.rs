@@ -6,7 +6,7 @@ use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use crate::BagError;
-use crate::bounded::{Budget, unpack_file};
+use crate::bounded::unpack_file;
 use crate::channel::{BagMessage, Counts};
 use crate::mcap_messages::{has_magic, read_mcap};
 use crate::mcap_records::Fault;
@@ -132,20 +132,7 @@ impl BagReader {
         // rosbag2 leaves the last file of a recording that was killed as it is.
         let is_packed = self.packed == Packed::Files && Self::storage_of(path).map_err(Fault::Visit)?.is_none();
         match (self.storage, is_packed) {
-            (Storage::Mcap, _) if packed_messages => {
-                let (mut budget, mut unpacked) = (Budget::default(), Vec::new());
-                let visit = &mut |message: &BagMessage<'_>| {
-                    let index = message.index();
-                    budget.unpack_message(message.data, &mut unpacked).map_err(|error| BagError::Corrupt {
-                        file: file.into(),
-                        messages_read: index as u64,
-                        reason: format!("a message cannot be decompressed: {error}"),
-                    })?;
-                    visit(&BagMessage { data: &unpacked, ..*message })
-                };
-                read_mcap(&mut source, file, counts, visit, lost)
-            }
-            (Storage::Mcap, false) => read_mcap(&mut source, file, counts, visit, lost),
+            (Storage::Mcap, false) => read_mcap(&mut source, packed_messages, file, counts, visit, lost),
             (Storage::Sqlite, false) => read_sqlite(path, packed_messages, file, counts, visit, lost),
             (storage, true) => {
                 let mut whole = tempfile::NamedTempFile::new()?;
@@ -155,7 +142,7 @@ impl BagReader {
                 }
                 whole.rewind()?;
                 let read = match storage {
-                    Storage::Mcap => read_mcap(&mut BufReader::new(whole), file, counts, visit, lost),
+                    Storage::Mcap => read_mcap(&mut BufReader::new(whole), false, file, counts, visit, lost),
                     Storage::Sqlite => read_sqlite(whole.path(), false, file, counts, visit, lost),
                 };
                 match read {

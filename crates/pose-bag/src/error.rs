@@ -117,6 +117,18 @@ pub enum BagError {
         /// The value.
         value: f64,
     },
+    /// A stamp of a track is out of range.
+    #[error(
+        "{file}, line {line}: the stamp {stamp} does not fit into 64 bits of nanoseconds (TUM has seconds, EuRoC nanoseconds)"
+    )]
+    StampRange {
+        /// The file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// What stands there.
+        stamp: String,
+    },
     /// A line is no pose.
     #[error("{file}, line {line}: {reason}")]
     InvalidPoseInLine {
@@ -211,6 +223,38 @@ pub enum BagError {
         /// Frame of this message.
         found: String,
     },
+    /// A pose of a path is given in another frame than the path.
+    #[error(
+        "{file}, topic {topic}, message {message}, pose {pose} (counted from 0): the frame is {found:?} in a path of {expected:?}"
+    )]
+    MixedPath {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// Pose in the message, from 0.
+        pose: usize,
+        /// Frame of the path, or of its poses before where the path names none.
+        expected: String,
+        /// Frame of this pose.
+        found: String,
+    },
+    /// A topic changes the type of its messages, so that what belongs together is unknown.
+    #[error("{file}, topic {topic}, message {message} (counted from 0): it is a {found} after those of {expected}")]
+    MixedTypes {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// Type of the messages before.
+        expected: String,
+        /// Type of this message.
+        found: String,
+    },
     /// The file does not begin like an MCAP file.
     #[error("{file} is not an MCAP file: its first bytes are not the MCAP magic")]
     NotMcap {
@@ -289,6 +333,16 @@ pub enum BagError {
         topic: String,
         /// The pairs that are there, as `parent:child`.
         pairs: String,
+    },
+    /// No topic has the transforms that were asked for.
+    #[error("{file} has no transforms {frames}; its topics of transforms: {topics}")]
+    NoTransforms {
+        /// The bag.
+        file: String,
+        /// The pair asked for, as `parent:child`.
+        frames: String,
+        /// Topics of type TFMessage that are there.
+        topics: String,
     },
     /// What should be written is already there.
     #[error("{file} already exists and is not overwritten")]

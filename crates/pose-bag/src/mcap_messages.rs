@@ -1,11 +1,12 @@
 //! Messages of an MCAP file, linked to their topics.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::Read;
 
 use mcap::records::op;
 
 use crate::BagError;
+use crate::bounded::Budget;
 use crate::channel::{BagMessage, Channel, Counts, Schema, Visit};
 use crate::mcap_records::{Fault, Records, read_file};
 
@@ -14,16 +15,19 @@ pub(crate) fn has_magic(start: &[u8]) -> bool {
     start.starts_with(mcap::MAGIC)
 }
 
-/// Hands on every message, in file order. `lost` is told how many messages came before what is lost, and why it is.
+/// Hands on every message, in file order. `lost` is told how many messages came before what is lost, and why it is. With
+/// `packed_messages` each is compressed by itself.
 pub(crate) fn read_mcap(
     source: &mut impl Read,
+    packed_messages: bool,
     file: &str,
     counts: &mut Counts,
     visit: &mut Visit<'_>,
     lost: &mut dyn FnMut(u64, Fault),
 ) -> Result<(), Fault> {
-    let mut linker =
-        Linker { file, counts, visit, lost, schemas: HashMap::new(), channels: HashMap::new(), messages_read: 0 };
+    let (schemas, channels, unknown) = (HashMap::new(), HashMap::new(), HashSet::new());
+    let unpack = packed_messages.then(Default::default);
+    let mut linker = Linker { file, unpack, counts, visit, lost, schemas, channels, unknown, messages_read: 0 };
     let mut start = Vec::new();
     source.by_ref().take(mcap::MAGIC.len() as u64).read_to_end(&mut start)?;
     if start.is_empty() {
@@ -44,11 +48,15 @@ pub(crate) fn read_mcap(
 
 struct Linker<'a, 'v> {
     file: &'a str,
+    /// Where messages are decompressed, if they are compressed.
+    unpack: Option<(Budget, Vec<u8>)>,
     counts: &'a mut Counts,
     visit: &'a mut Visit<'v>,
     lost: &'a mut dyn FnMut(u64, Fault),
     schemas: HashMap<u16, Schema>,
     channels: HashMap<u16, Channel>,
+    /// Channels of which it was said that their messages are lost.
+    unknown: HashSet<u16>,
     messages_read: u64,
 }
 
@@ -84,7 +92,9 @@ impl Linker<'_, '_> {
     fn add_channel(&mut self, id: u16, schema_id: u16, topic: String, encoding: String) -> Result<(), Fault> {
         let none = Schema::default();
         let Some(schema) = self.schemas.get(&schema_id).or(Some(&none).filter(|_| schema_id == 0)) else {
-            return Err(Fault::Corrupt(format!("a topic has the unknown schema {schema_id}")));
+            // The record that defined it is lost; those of others are as good as before.
+            self.lost(format!("a topic has the unknown schema {schema_id}"));
+            return Ok(());
         };
         let channel = self.counts.channel(topic, encoding, schema)?;
         let is_same = |known: &Channel| {
@@ -104,7 +114,20 @@ impl Linker<'_, '_> {
 
     fn message(&mut self, id: u16, log_time_ns: u64, data: &[u8]) -> Result<(), Fault> {
         let Some(channel) = self.channels.get(&id) else {
-            return Err(Fault::Corrupt(format!("a message belongs to the unknown channel {id}")));
+            if self.unknown.insert(id) {
+                self.lost(format!("messages belong to the unknown channel {id}"));
+            }
+            return Ok(());
+        };
+        let data = match &mut self.unpack {
+            None => data,
+            Some((budget, unpacked)) => {
+                if let Err(error) = budget.unpack_message(data, unpacked) {
+                    self.lost(format!("a message cannot be decompressed: {error}"));
+                    return Ok(());
+                }
+                unpacked
+            }
         };
         BagMessage { file: self.file, channel, log_time_ns, data }.hand_to(self.visit)?;
         self.messages_read += 1;

@@ -42,7 +42,7 @@ pub struct Origin {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {
     /// The topic; without it the bag has to have exactly one with poses. Paths count only where there is nothing else, and
-    /// transforms only where there are not even paths.
+    /// transforms only where there are not even paths, or where [`Self::frames`] are named.
     pub topic: Option<String>,
     /// Parent and child frame of the transforms that are meant, without leading slash; where it is not given there has to be one pair.
     pub frames: Option<(String, String)>,

@@ -11,28 +11,39 @@ use crate::channel::BagMessage;
 use crate::msg::{self, Message};
 use crate::pose_set::{Grouping, Origin, PoseSet, Selection};
 
-/// Frame pairs that are told apart.
+/// Frame pairs to choose from that are told.
 const MAX_PAIRS: usize = 100;
 
 /// Poses of one topic of a bag, and what of the bag is lost.
 ///
 /// Messages are taken in the order in which they were recorded.
 pub(crate) fn read_bag(bag: &BagReader, selection: &Selection) -> Result<(Vec<PoseSet>, Vec<BagError>), BagError> {
-    let topic = match &selection.topic {
-        None => choose(bag)?,
-        Some(topic) => topic.clone(),
+    let topic = match (&selection.topic, &selection.frames) {
+        (Some(topic), _) => topic.clone(),
+        (None, Some(frames)) => choose_transforms(bag, frames)?,
+        (None, None) => choose(bag)?,
     };
     let mut collector = Collector { selection, sets: Vec::new(), singles: Vec::new(), frame: None, pairs: Vec::new() };
-    let mut is_there = false;
+    let mut topic_type: Option<String> = None;
     let losses = bag.for_each(&mut |message| {
         if message.topic() != topic {
             return Ok(());
         }
-        let Some(kind) = Kind::of(message.message_type()) else { return Err(not_poses(bag, &topic)?) };
-        is_there = true;
+        let found = message.message_type();
+        let expected = topic_type.get_or_insert_with(|| found.to_owned());
+        if expected != found {
+            return Err(BagError::MixedTypes {
+                file: message.file.to_owned(),
+                topic: topic.clone(),
+                message: message.index(),
+                expected: expected.clone(),
+                found: found.to_owned(),
+            });
+        }
+        let Some(kind) = Kind::of(found) else { return Err(not_poses(bag, &topic)?) };
         collector.take(kind, message)
     })?;
-    if !is_there {
+    if topic_type.is_none() {
         return Err(losses.into_iter().next().map_or_else(|| not_poses(bag, &topic), Ok)?);
     }
     let sets = collector.into_sets(bag, &topic)?;
@@ -101,6 +112,43 @@ fn choose(bag: &BagReader) -> Result<String, BagError> {
     }
 }
 
+/// The topic with the transforms between two frames.
+fn choose_transforms(bag: &BagReader, frames: &(String, String)) -> Result<String, BagError> {
+    let (mut topics, losses) = bag.topics()?;
+    topics.retain(|_, message_type| message_type == msg::TfMessage::TYPE);
+    let mut found = topics.clone();
+    // Of a single one it is said later which pairs it has.
+    if topics.len() > 1 {
+        found.clear();
+        bag.for_each(&mut |message| {
+            let Some((topic, of)) =
+                topics.get_key_value(message.topic()).filter(|(topic, _)| !found.contains_key(*topic))
+            else {
+                return Ok(());
+            };
+            if message.decode::<msg::TfMessage>()?.transforms.iter().any(|transform| pair(transform) == *frames) {
+                found.insert(topic.clone(), of.clone());
+            }
+            Ok(())
+        })?;
+    }
+    let file = bag.name().to_owned();
+    match found.len() {
+        0 => Err(losses.into_iter().next().unwrap_or_else(|| {
+            let (frames, topics) = (format!("{}:{}", frames.0, frames.1), list(&topics, |_| true));
+            BagError::NoTransforms { file, frames, topics }
+        })),
+        1 => Ok(found.into_keys().collect()),
+        _ => Err(BagError::SeveralPoseTopics { file, topics: list(&found, |_| true) }),
+    }
+}
+
+/// Parent and child frame, without the leading slashes of old.
+fn pair(transform: &msg::TransformStamped) -> (String, String) {
+    let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
+    (bare(&transform.header.frame_id), bare(&transform.child_frame_id))
+}
+
 fn list(topics: &BTreeMap<String, String>, is_listed: impl Fn(&str) -> bool) -> String {
     let listed = topics.iter().filter(|(_, message_type)| is_listed(message_type));
     let listed: Vec<_> = listed.map(|(topic, message_type)| format!("{topic} ({message_type})")).collect();
@@ -133,7 +181,8 @@ impl Collector<'_> {
                 self.take_set(message, array.header, &array.poses, None)
             }
             Kind::Path => {
-                let path: msg::Path = message.decode()?;
+                let mut path: msg::Path = message.decode()?;
+                path.header.frame_id = frame_of(message, &path)?;
                 let stamps_ns = path.poses.iter().map(|pose| pose.header.stamp.to_nanos()).collect();
                 let poses: Vec<_> = path.poses.iter().map(|pose| pose.pose).collect();
                 self.take_set(message, path.header, &poses, Some(stamps_ns))
@@ -199,8 +248,7 @@ impl Collector<'_> {
     fn take_transforms(&mut self, message: &BagMessage<'_>) -> Result<(), BagError> {
         let transforms = message.decode::<msg::TfMessage>()?.transforms;
         for (index, transform) in transforms.into_iter().enumerate() {
-            let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
-            let pair = (bare(&transform.header.frame_id), bare(&transform.child_frame_id));
+            let pair = pair(&transform);
             if self.pairs.len() < MAX_PAIRS && !self.pairs.contains(&pair) {
                 self.pairs.push(pair.clone());
             }
@@ -217,7 +265,7 @@ impl Collector<'_> {
     fn into_sets(mut self, bag: &BagReader, topic: &str) -> Result<Vec<PoseSet>, BagError> {
         let is_undecided = match &self.selection.frames {
             None => self.pairs.len() > 1,
-            Some(wanted) => !self.pairs.is_empty() && !self.pairs.contains(wanted),
+            Some(_) => !self.pairs.is_empty() && self.singles.is_empty(),
         };
         if is_undecided {
             let pairs: Vec<_> = self.pairs.iter().map(|(parent, child)| format!("{parent}:{child}")).collect();
@@ -249,6 +297,24 @@ impl Collector<'_> {
             }
         }
         Ok(sets)
+    }
+}
+
+/// The frame of a path and of every pose in it; an empty one says nothing.
+fn frame_of(message: &BagMessage<'_>, path: &msg::Path) -> Result<String, BagError> {
+    let of_poses = || path.poses.iter().map(|pose| &pose.header.frame_id);
+    let mut named = [&path.header.frame_id].into_iter().chain(of_poses()).filter(|frame| !frame.is_empty());
+    let expected = named.next().cloned().unwrap_or_default();
+    match of_poses().enumerate().find(|(_, frame)| !frame.is_empty() && **frame != expected) {
+        None => Ok(expected),
+        Some((pose, found)) => Err(BagError::MixedPath {
+            file: message.file.to_owned(),
+            topic: message.topic().to_owned(),
+            message: message.index(),
+            pose,
+            expected,
+            found: found.clone(),
+        }),
     }
 }
 

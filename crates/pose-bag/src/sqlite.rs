@@ -1,7 +1,7 @@
 //! Messages of an SQLite file (`.db3`), the storage of rosbag2 before MCAP.
 //!
 //! The file is not trusted: what looks like its tables could be views that never end. They have to be tables, rows have to come in
-//! the order of their numbers and to hold no more bytes than the file, and the work is limited by its size.
+//! the order of their numbers and to hold no more bytes than the file and its log, and the work is limited by its size.
 
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -36,10 +36,10 @@ pub(crate) fn read_sqlite(
     visit: &mut Visit<'_>,
     lost: &mut dyn FnMut(u64, Fault),
 ) -> Result<(), Fault> {
-    let mut reader = Reader { file, packed_messages, messages_read: 0, visit };
+    let mut reader = Reader { file, packed_messages, messages_read: 0, visit, lost };
     match reader.read(path, counts) {
         Err(fault @ Fault::Corrupt(_)) => {
-            lost(reader.messages_read, fault);
+            (reader.lost)(reader.messages_read, fault);
             Ok(())
         }
         read => read,
@@ -51,12 +51,15 @@ struct Reader<'a, 'v> {
     packed_messages: bool,
     messages_read: u64,
     visit: &'a mut Visit<'v>,
+    lost: &'a mut dyn FnMut(u64, Fault),
 }
 
 impl Reader<'_, '_> {
     fn read(&mut self, path: &Path, counts: &mut Counts) -> Result<(), Fault> {
-        let size = fs::metadata(path)?.len();
-        let whole_pages = whole_pages(path, size)?;
+        let main_size = fs::metadata(path)?.len();
+        let whole_pages = whole_pages(path, main_size)?;
+        // What a killed recorder wrote is in its log for the most part.
+        let size = main_size.saturating_add(log_size(path));
         let database = open(whole_pages.as_ref().map_or(path, NamedTempFile::path), size)?;
         for table in ["topics", "messages"] {
             // A virtual table has no page of its own.
@@ -84,9 +87,11 @@ impl Reader<'_, '_> {
                 return Err(Fault::Corrupt(format!("a message belongs to the unknown topic {topic}")));
             };
             let data = if self.packed_messages {
-                let unpacking = budget.unpack_message(data, &mut unpacked);
-                unpacking
-                    .map_err(|error| Fault::Corrupt(format!("message {number} cannot be decompressed: {error}")))?;
+                if let Err(error) = budget.unpack_message(data, &mut unpacked) {
+                    let why = format!("message {number} cannot be decompressed: {error}");
+                    (self.lost)(self.messages_read, Fault::Corrupt(why));
+                    continue;
+                }
                 &unpacked
             } else {
                 data
@@ -121,13 +126,18 @@ fn whole_pages(path: &Path, size: u64) -> Result<Option<NamedTempFile>, Fault> {
     Ok(Some(copy))
 }
 
+/// Bytes of the write-ahead log beside a file.
+fn log_size(path: &Path) -> u64 {
+    let mut log = path.as_os_str().to_owned();
+    log.push("-wal");
+    fs::metadata(log).map_or(0, |log| log.len())
+}
+
 fn open(path: &Path, size: u64) -> Result<Connection, Fault> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
     // Immutable, nothing is written beside the file. A log that a recorder could not merge any more is read along with it.
-    let mut log = path.as_os_str().to_owned();
-    log.push("-wal");
-    let has_log = fs::metadata(&log).is_ok_and(|log| log.len() > 0);
-    let mut name = String::from("file:");
+    // What follows two slashes would be taken for a host.
+    let mut name = String::from(if path.is_absolute() { "file://" } else { "file:" });
     for &byte in path.as_os_str().as_encoded_bytes() {
         // SQLite takes names as they are but for what has a meaning in a URI.
         match byte {
@@ -135,7 +145,7 @@ fn open(path: &Path, size: u64) -> Result<Connection, Fault> {
             plain => name.push(plain.into()),
         }
     }
-    name += if has_log { "?mode=ro" } else { "?immutable=1" };
+    name += if log_size(path) > 0 { "?mode=ro" } else { "?immutable=1" };
     let mut database = Connection::open_with_flags(name, flags)?;
     database.set_limit(Limit::SQLITE_LIMIT_LENGTH, MAX_MESSAGE_BYTES as i32)?;
     // With a schema that may be written, here for reading only, a file that is cut off is read up to where it ends.

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
+use std::num::{IntErrorKind, ParseIntError};
 use std::path::Path;
 
 use se3_geom::{Pose, pose_from_xyzw, xyzw_from_rotation};
@@ -103,11 +104,13 @@ impl Table {
         let index = self.index_of(EUROC[0].1)?;
         let stamp = |row: usize| {
             let text = fields(self.row_text(row)).nth(index).unwrap_or_default();
-            text.parse().map_err(|_| BagError::NotANumber {
-                file: self.file.clone(),
-                line: self.rows[row].line,
-                column: EUROC[0].1.into(),
-                text: text.chars().take(40).collect(),
+            let (file, line) = (self.file.clone(), self.rows[row].line);
+            let stamp = || text.chars().take(40).collect();
+            text.parse().map_err(|error: ParseIntError| match error.kind() {
+                IntErrorKind::PosOverflow | IntErrorKind::NegOverflow => {
+                    BagError::StampRange { file, line, stamp: stamp() }
+                }
+                _ => BagError::NotANumber { file, line, column: EUROC[0].1.into(), text: stamp() },
             })
         };
         (0..self.len()).map(stamp).collect::<Result<_, _>>().map(Some)

@@ -72,7 +72,14 @@ fn kitti_pose(row: &[&str], file: &str, line: usize) -> Result<Pose, BagError> {
 /// Seconds as written, in nanoseconds. Plain decimals are taken digit by digit: a double resolves today's epoch only to 240 ns.
 fn nanoseconds(text: &str, file: &str, line: usize) -> Result<i64, BagError> {
     let seconds = finite(text, file, line, "t")?;
-    Ok(exact_nanoseconds(text).unwrap_or((seconds * NANOSECONDS as f64).round() as i64))
+    let rounded = (seconds * NANOSECONDS as f64).round();
+    // As a double, i64::MAX is 2⁶³, one too many.
+    let fitting = Some(rounded as i64).filter(|_| rounded.abs() < i64::MAX as f64);
+    exact_nanoseconds(text).or(fitting).ok_or_else(|| BagError::StampRange {
+        file: file.into(),
+        line,
+        stamp: text.chars().take(40).collect(),
+    })
 }
 
 fn exact_nanoseconds(text: &str) -> Option<i64> {

@@ -122,6 +122,73 @@ fn a_damaged_chunk_is_lost_alone() {
     assert!(read.iter().all(|pose| pose.translation != support::pose(20).translation));
 }
 
+/// A file that ends as it should around these records.
+fn file_of(records: &[u8]) -> Vec<u8> {
+    let end = [record(15, 4, &[0; 4]), record(2, 20, &[0; 20]), mcap::MAGIC.to_vec()].concat();
+    [after_magic(records), end].concat()
+}
+
+fn message_record(channel: u16, data: &[u8]) -> Vec<u8> {
+    let body = [&channel.to_le_bytes()[..], &[0; 20], data].concat();
+    record(5, body.len() as u64, &body)
+}
+
+/// Schema 1, and channel 1 of stamped poses.
+fn tool_channel() -> Vec<u8> {
+    let text = |text: &str| u32_bytes_prefixed(text.as_bytes());
+    let schema = [&[1, 0][..], &text(PoseStamped::TYPE), &text("ros2msg"), &text("")].concat();
+    let channel = [&[1, 0, 1, 0][..], &text("/tool"), &text("cdr"), &[0; 4]].concat();
+    [record(3, schema.len() as u64, &schema), record(4, channel.len() as u64, &channel)].concat()
+}
+
+#[test]
+fn messages_of_a_lost_channel_are_lost_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lost.mcap");
+    let known = |k: usize| message_record(1, &encode(&support::stamped("base", 0, &support::pose(k))).unwrap());
+    // Channel 2 has a schema that nobody defined, and channel 3 is itself not defined.
+    let channel = [&[2, 0, 9, 0][..], &u32_bytes_prefixed(b"/chatter"), &u32_bytes_prefixed(b"cdr"), &[0; 4]].concat();
+    let mut records = [tool_channel(), record(4, channel.len() as u64, &channel)].concat();
+    for k in 0..20 {
+        records.extend([message_record(2, b"lost"), message_record(3, b"lost"), known(k)].concat());
+    }
+    for records in [records.clone(), chunk(&records)] {
+        fs::write(&path, file_of(&records)).unwrap();
+        let (sets, losses) = recover_poses(&path, &Selection::default()).unwrap();
+        support::assert_same(&sets[0].poses, &support::poses(20));
+        let said: Vec<_> = losses.iter().map(ToString::to_string).collect();
+        assert_eq!(said.len(), 3, "{said:?}");
+        let expected = ["the unknown schema 9", "the unknown channel 2", "the unknown channel 3"];
+        assert!(said.iter().zip(expected).all(|(said, expected)| said.ends_with(expected)), "{said:?}");
+    }
+}
+
+#[test]
+fn a_message_that_cannot_be_decompressed_is_lost_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut records = tool_channel();
+    for k in 0..20 {
+        let data = encode(&support::stamped("base", 0, &support::pose(k))).unwrap();
+        let mut packed = zstd::bulk::compress(&data, 1).unwrap();
+        packed[0] ^= u8::from(k == 19);
+        records.extend(message_record(1, &packed));
+        packed[0] ^= 1;
+        records.extend(message_record(1, &packed).repeat(usize::from(k == 10)));
+    }
+    fs::write(folder.path().join("bag.mcap"), file_of(&records)).unwrap();
+    let metadata = "rosbag2_bagfile_information: {version: 9, storage_identifier: mcap, compression_mode: MESSAGE, \
+                    compression_format: zstd, relative_file_paths: [bag.mcap]}";
+    fs::write(folder.path().join("metadata.yaml"), metadata).unwrap();
+    let (sets, losses) = recover_poses(folder.path(), &Selection::default()).unwrap();
+    support::assert_same(&sets[0].poses, &support::poses(19));
+    let said: Vec<_> = losses.iter().map(ToString::to_string).collect();
+    assert_eq!(said.len(), 2, "{said:?}");
+    for (said, before) in said.iter().zip([11, 19]) {
+        let expected = format!("after {before} readable messages: a message cannot be decompressed");
+        assert!(said.contains(&expected), "{said}");
+    }
+}
+
 /// A chunk of so many zeros (records of opcode 0 and no length), by zstd, that claims to hold `claimed` bytes.
 fn packed_zeros(zeros: usize, claimed: u64) -> Vec<u8> {
     let packed = zstd::bulk::compress(&vec![0; zeros], 1).unwrap();

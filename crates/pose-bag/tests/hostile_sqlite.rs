@@ -62,6 +62,32 @@ fn what_a_killed_recorder_left_in_its_log_is_read() {
 }
 
 #[test]
+fn a_path_with_doubled_slashes_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), 3);
+    for slashes in ["/", "//"] {
+        let doubled = format!("{slashes}{}", path.display());
+        assert_same(&read_poses(doubled, None).unwrap()[0].poses, &poses(3));
+    }
+}
+
+#[test]
+fn a_recording_that_is_in_its_log_alone_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.db3");
+    let database = Connection::open(&path).unwrap();
+    database.execute_batch("PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 0; BEGIN;").unwrap();
+    database.execute_batch(&format!("{TABLES}{MESSAGES}")).unwrap();
+    for k in 0..500 {
+        let data = encode(&stamped("base", k as i64, &pose(k))).unwrap();
+        database.execute("INSERT INTO messages VALUES (NULL, 1, ?1, ?2)", (k as i64, data)).unwrap();
+    }
+    database.execute_batch("COMMIT").unwrap();
+    assert!(fs::metadata(&path).unwrap().len() < 500 * 84, "the poses are in the log");
+    assert_same(&read_poses(&path, None).unwrap()[0].poses, &poses(500));
+}
+
+#[test]
 fn a_cut_is_an_error_and_what_is_whole_is_recovered() {
     let folder = tempfile::tempdir().unwrap();
     let count = 2000;
@@ -151,6 +177,32 @@ fn metadata_and_packed_files_that_unfold_are_refused() {
     Connection::open(path).unwrap().execute("INSERT INTO messages VALUES (1, 1, 1, ?1)", [message]).unwrap();
     write("metadata.yaml", metadata("message", "sqlite3", "bomb.db3").as_bytes());
     assert!(refusal().contains("message 1 cannot be decompressed: it unpacks to more than"));
+}
+
+#[test]
+fn a_message_that_cannot_be_decompressed_is_lost_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let database = Connection::open(bag(folder.path(), "bag.db3", &format!("{TABLES}{MESSAGES}"), 0)).unwrap();
+    for k in 0..20 {
+        let mut packed = zstd::bulk::compress(&encode(&stamped("base", 0, &pose(k))).unwrap(), 1).unwrap();
+        packed[0] ^= u8::from(k == 19);
+        let insert = |data: &[u8]| {
+            database.execute("INSERT INTO messages VALUES (NULL, 1, ?1, ?2)", (k as i64, data)).unwrap();
+        };
+        insert(&packed);
+        if k == 10 {
+            insert(b"no zstd");
+        }
+    }
+    let metadata = "rosbag2_bagfile_information: {version: 9, storage_identifier: sqlite3, compression_mode: MESSAGE, \
+                    compression_format: zstd, relative_file_paths: [bag.db3]}";
+    fs::write(folder.path().join("metadata.yaml"), metadata).unwrap();
+    let (sets, losses) = recover_poses(folder.path(), &Selection::default()).unwrap();
+    assert_same(&sets[0].poses, &poses(19));
+    let said: Vec<_> = losses.iter().map(ToString::to_string).collect();
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(said[0].contains("after 11 readable messages: message 12 cannot be decompressed"), "{said:?}");
+    assert!(said[1].contains("after 19 readable messages: message 21 cannot be decompressed"), "{said:?}");
 }
 
 proptest! {

@@ -6,9 +6,9 @@ mod support;
 use std::fs;
 use std::path::PathBuf;
 
-use pose_bag::msg::{PoseArray, PoseStamped};
-use pose_bag::{BagWriter, Table, read_poses, read_table};
-use support::{array, poses, stamped};
+use pose_bag::msg::{Message, Path, PoseArray, PoseStamped, Text};
+use pose_bag::{BagWriter, Table, encode, read_poses, read_table};
+use support::{array, header, poses, stamped};
 use tempfile::TempDir;
 
 const HEADER: &str = "x,y,z,qx,qy,qz,qw\n";
@@ -123,6 +123,21 @@ fn euroc() {
 }
 
 #[test]
+fn stamps_that_do_not_fit() {
+    let folder = Folder::new();
+    let does_not_fit = "does not fit into 64 bits of nanoseconds (TUM has seconds, EuRoC nanoseconds)";
+    for stamp in ["1403636579763555584", "-1e10", "9223372036.854775808"] {
+        let text = format!("9223372036.854775807 0 0 0 0 0 0 1\n{stamp} 0 0 0 0 0 0 1\n");
+        let expected = format!("track.tum, line 2: the stamp {stamp} {does_not_fit}");
+        assert_eq!(folder.refusal("track.tum", text), expected);
+    }
+    let header = "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
+    let text = format!("{header}9223372036854775807,0,0,0,1,0,0,0\n9223372036854775808,0,0,0,1,0,0,0\n");
+    let expected = format!("data.csv, line 3: the stamp 9223372036854775808 {does_not_fit}");
+    assert_eq!(folder.refusal("data.csv", text), expected);
+}
+
+#[test]
 fn poses_in_messages() {
     let folder = Folder::new();
     let mut zero = array("base", &poses(3));
@@ -164,6 +179,64 @@ fn frames_and_types_that_change() {
         folder.sentence(read_poses(folder.path("bag.mcap"), None)),
         "bag.mcap, topic /tool, message 1 (counted from 0): the frame is \"world\" after \"base\""
     );
+}
+
+/// A bag with messages of several types on `/poses`, which [`BagWriter`] refuses.
+fn mixed_bag(folder: &Folder, messages: &[(&str, Vec<u8>)]) -> PathBuf {
+    let path = folder.path("mixed.mcap");
+    let mut writer = mcap::Writer::new(fs::File::create(&path).unwrap()).unwrap();
+    for (k, (message_type, data)) in (0..).zip(messages) {
+        let schema = writer.add_schema(message_type, "ros2msg", b"").unwrap();
+        let channel_id = writer.add_channel(schema, "/poses", "cdr", &Default::default()).unwrap();
+        let header = mcap::records::MessageHeader { channel_id, sequence: k, log_time: k.into(), publish_time: 0 };
+        writer.write_to_known_channel(&header, data).unwrap();
+    }
+    writer.finish().unwrap();
+    path
+}
+
+#[test]
+fn a_topic_of_two_types_is_refused_whichever_comes_first() {
+    let folder = Folder::new();
+    let single = (PoseStamped::TYPE, encode(&stamped("base", 0, &poses(1)[0])).unwrap());
+    let array = (PoseArray::TYPE, encode(&array("base", &poses(3))).unwrap());
+    let path = Path { header: header("base", 0), poses: vec![stamped("base", 0, &poses(1)[0])] };
+    let path = (Path::TYPE, encode(&path).unwrap());
+    let text = (Text::TYPE, encode(&Text { data: "pose".into() }).unwrap());
+    for (first, second) in [(&array, &single), (&path, &single), (&single, &array), (&array, &path), (&array, &text)] {
+        let bag = mixed_bag(&folder, &[first.clone(), first.clone(), second.clone()]);
+        assert_eq!(
+            folder.sentence(read_poses(bag, None)),
+            format!(
+                "mixed.mcap, topic /poses, message 2 (counted from 0): it is a {} after those of {}",
+                second.0, first.0
+            )
+        );
+    }
+}
+
+#[test]
+fn poses_of_a_path_in_another_frame() {
+    let folder = Folder::new();
+    let read = |frame: &str, of_poses: [&str; 3]| {
+        let poses = of_poses.iter().zip(poses(3)).map(|(frame, pose)| stamped(frame, 0, &pose)).collect();
+        let mut bag = BagWriter::create(folder.path("bag.mcap")).unwrap();
+        bag.write("/path", 0, &Path { header: header(frame, 0), poses }).unwrap();
+        bag.finish().unwrap();
+        read_poses(folder.path("bag.mcap"), None)
+    };
+    let place = "bag.mcap, topic /path, message 0, pose";
+    assert_eq!(
+        folder.sentence(read("base", ["base", "camera", "base"])),
+        format!("{place} 1 (counted from 0): the frame is \"camera\" in a path of \"base\"")
+    );
+    assert_eq!(
+        folder.sentence(read("", ["", "base", "camera"])),
+        format!("{place} 2 (counted from 0): the frame is \"camera\" in a path of \"base\"")
+    );
+    for (frame, of_poses) in [("base", ["", "base", ""]), ("", ["", "base", "base"])] {
+        assert_eq!(read(frame, of_poses).unwrap()[0].frame_id, "base");
+    }
 }
 
 /// A bag written by crate `mcap` alone, so that encoding and bytes may be wrong.

@@ -107,24 +107,27 @@ fn a_path_is_chosen_where_there_is_nothing_else() {
     }
 }
 
+fn transform(parent: &str, child: &str, k: usize) -> TransformStamped {
+    let Pose { position, orientation } = Pose::from(&pose(k));
+    let translation = Vector3 { x: position.x, y: position.y, z: position.z };
+    let transform = Transform { translation, rotation: orientation };
+    TransformStamped { header: header(parent, 7 + k as i64), child_frame_id: child.into(), transform }
+}
+
+fn select(parent: &str, child: &str) -> Selection {
+    Selection { frames: Some((parent.into(), child.into())), ..Selection::default() }
+}
+
 #[test]
 fn transforms_between_one_pair_of_frames() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("tf.mcap");
     let mut bag = BagWriter::create(&path).unwrap();
     for k in 0..5 {
-        let transform = |parent: &str, child: &str, k: usize| {
-            let Pose { position, orientation } = Pose::from(&pose(k));
-            let translation = Vector3 { x: position.x, y: position.y, z: position.z };
-            let transform = Transform { translation, rotation: orientation };
-            TransformStamped { header: header(parent, 7 + k as i64), child_frame_id: child.into(), transform }
-        };
         let transforms = vec![transform("map", "odom", 50 + k), transform("/base", "tool", k)];
         bag.write("/tf", k as u64, &TfMessage { transforms }).unwrap();
     }
     bag.finish().unwrap();
-    let select =
-        |parent: &str, child: &str| Selection { frames: Some((parent.into(), child.into())), ..Selection::default() };
     let (sets, losses) = recover_poses(&path, &select("base", "tool")).unwrap();
     assert!(losses.is_empty());
     assert_eq!((sets.len(), sets[0].frame_id.as_str()), (1, "base"));
@@ -135,6 +138,63 @@ fn transforms_between_one_pair_of_frames() {
         assert!(error.ends_with("topic /tf: name one of the frame pairs map:odom, base:tool"), "{error}");
     }
     assert_eq!(TfMessage::TYPE, "tf2_msgs/msg/TFMessage");
+}
+
+#[test]
+fn frames_that_are_named_mean_the_transforms_that_have_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("several.mcap");
+    let write = |with_static: bool| {
+        let mut bag = BagWriter::create(&path).unwrap();
+        for k in 0..3 {
+            bag.write("/goal", k as u64, &stamped("base", 0, &pose(50 + k))).unwrap();
+            bag.write("/tf", k as u64, &TfMessage { transforms: vec![transform("base", "tool", k)] }).unwrap();
+            if with_static {
+                let transforms = vec![transform("tool", "camera", 70 + k), transform("base", "table", 80)];
+                bag.write("/tf_static", k as u64, &TfMessage { transforms }).unwrap();
+            }
+        }
+        bag.finish().unwrap();
+    };
+    for with_static in [false, true] {
+        write(with_static);
+        let (sets, _) = recover_poses(&path, &select("base", "tool")).unwrap();
+        assert_same(&sets[0].poses, &poses(3));
+        assert_eq!(sets[0].origin.topic.as_deref(), Some("/tf"));
+    }
+    let (sets, _) = recover_poses(&path, &select("tool", "camera")).unwrap();
+    assert_eq!(sets[0].origin.topic.as_deref(), Some("/tf_static"));
+    let refusal = |parent: &str| recover_poses(&path, &select(parent, "x")).unwrap_err().to_string();
+    let topics = "/tf (tf2_msgs/msg/TFMessage), /tf_static (tf2_msgs/msg/TFMessage)";
+    let sentence = refusal("nonsense");
+    assert!(
+        sentence.ends_with(&format!("has no transforms nonsense:x; its topics of transforms: {topics}")),
+        "{sentence}"
+    );
+    write(false);
+    let sentence = refusal("nonsense");
+    assert!(sentence.ends_with("topic /tf: name one of the frame pairs base:tool"), "{sentence}");
+    let mut bag = BagWriter::create(&path).unwrap();
+    bag.write("/goal", 0, &stamped("base", 0, &pose(1))).unwrap();
+    bag.finish().unwrap();
+    let sentence = refusal("nonsense");
+    assert!(sentence.ends_with("has no transforms nonsense:x; its topics of transforms: none"), "{sentence}");
+}
+
+#[test]
+fn a_pair_of_frames_is_found_among_any_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hands.mcap");
+    let mut bag = BagWriter::create(&path).unwrap();
+    for k in 0..3 {
+        let mut transforms: Vec<_> = (0..150).map(|link| transform("hand", &format!("link{link}"), 9)).collect();
+        transforms.push(transform("base", "tool", k));
+        bag.write("/tf", k as u64, &TfMessage { transforms }).unwrap();
+    }
+    bag.finish().unwrap();
+    assert_same(&recover_poses(&path, &select("base", "tool")).unwrap().0[0].poses, &poses(3));
+    let error = recover_poses(&path, &select("base", "camera")).unwrap_err().to_string();
+    assert!(error.contains("topic /tf: name one of the frame pairs hand:link0, "), "{error}");
 }
 
 #[test]

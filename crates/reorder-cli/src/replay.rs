@@ -6,6 +6,7 @@ mod markers;
 mod score;
 mod summary;
 
+use std::collections::HashSet;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::IsTerminal;
@@ -20,7 +21,7 @@ use rayon::prelude::*;
 
 use crate::failure::Failure;
 use crate::order::{Topology, weight};
-use crate::output::print;
+use crate::output::{print, spare};
 use crate::plan::{MinimumVerdict, load_robot};
 use crate::source::frame_pair;
 use ::report::counted;
@@ -125,17 +126,10 @@ fn outputs(arguments: &Arguments, inputs: &[Input]) -> Result<Vec<Option<PathBuf
     }
     remove_abandoned(folder).map_err(Failure::bad_input)?;
     let file = |input: &Input| if is_file { output.clone() } else { folder.join(format!("{}.mcap", input.name)) };
-    let same = |path: &Path| fs::canonicalize(path).ok();
-    inputs
-        .iter()
-        .map(|input| {
-            let output = file(input);
-            if same(&output).is_some_and(|output| Some(output) == same(&input.path)) {
-                return Err(Failure::BadInput(format!("{}: the bag would be written over itself", output.display())));
-            }
-            Ok(Some(output))
-        })
-        .collect()
+    let outputs: Vec<PathBuf> = inputs.iter().map(file).collect();
+    let taken = inputs.iter().flat_map(|input| input.files.iter().map(|file| &file.path).chain([&input.path]));
+    spare(taken.map(PathBuf::as_path), outputs.iter().map(PathBuf::as_path))?;
+    Ok(outputs.into_iter().map(Some).collect())
 }
 
 fn task(arguments: &Arguments) -> Result<Task, Failure> {
@@ -148,7 +142,10 @@ fn task(arguments: &Arguments) -> Result<Task, Failure> {
         |topic: Option<&String>| Selection { topic: topic.cloned(), frames: arguments.frames.clone(), grouping };
     let selections: Vec<Selection> = match arguments.topic.as_slice() {
         [] => vec![selection(None)],
-        topics => topics.iter().map(|topic| selection(Some(topic))).collect(),
+        topics => {
+            let mut seen = HashSet::new();
+            topics.iter().filter(|topic| seen.insert(*topic)).map(|topic| selection(Some(topic))).collect()
+        }
     };
     let robot = arguments.robot.as_deref().map(|name| load_robot(name, arguments.limits.as_deref())).transpose()?;
     let options = Options { topology: arguments.topology.into(), ..Options::default() };

@@ -9,7 +9,7 @@ use std::process::Output;
 mod support;
 
 use planner::pose_bag::msg::{Header, JointState, MarkerArray, PoseArray, PoseStamped, Time};
-use planner::pose_bag::{BagReader, BagWriter, read_poses};
+use planner::pose_bag::{BagMessage, BagReader, BagWriter, read_poses};
 use planner::se3_geom::Pose;
 use serde_json::{Value, json};
 use support::*;
@@ -223,6 +223,8 @@ fn a_broken_bag_is_reported_and_the_others_go_on() {
     assert_eq!(table.lines().count(), 7, "{table}");
     let line =
         |name: &str| table.lines().find(|line| line.contains(name)).unwrap().split_whitespace().collect::<Vec<_>>();
+    let run_3 = bags.join("run_3.mcap");
+    let ordered: Value = serde_json::from_str(&out(&reorder(&["order", run_3.to_str().unwrap()]))).unwrap();
     assert_eq!(
         line("run_3.mcap")[1..],
         [
@@ -230,7 +232,7 @@ fn a_broken_bag_is_reported_and_the_others_go_on() {
             "/tool",
             "1",
             &recording("lasa_zshape").0.len().to_string(),
-            line("run_3.mcap")[5],
+            ordered["verdict"].as_str().unwrap(),
             "1.0000",
             "1.0000",
             "-",
@@ -262,13 +264,77 @@ fn what_cannot_be_is_said_in_one_sentence() {
         (&["nowhere"], "nowhere: No such file or directory"),
         (&[&bag, &bag], "would both be written as lasa_sine.mcap"),
         (&[&bag, copy.to_str().unwrap(), "-o", "one.mcap"], "one.mcap is one file for 2 bags: name a folder"),
-        (&[copy.to_str().unwrap(), "-o", copy.to_str().unwrap()], "the bag would be written over itself"),
+        (&[copy.to_str().unwrap(), "-o", copy.to_str().unwrap()], "copy.mcap: already an input or another output"),
         (&[&bag, "--topic", "/none"], "has no poses on topic /none"),
     ];
     for (arguments, expected) in cases {
         let (code, said) = refusal_of_replay(arguments);
         assert!(code == 2 && said.contains(expected) && said.lines().count() == 1, "{arguments:?}: {said}");
     }
+}
+
+/// Every file below, by its bytes.
+fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let of =
+        |path: PathBuf| if path.is_dir() { contents(&path) } else { [(path.clone(), fs::read(path).unwrap())].into() };
+    entries.flat_map(of).collect()
+}
+
+#[test]
+fn no_output_takes_the_place_of_a_file_of_any_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    drawn(&folder.path().join("bag"), "lasa_sine");
+    fs::create_dir_all(folder.path().join("d/sub")).unwrap();
+    drawn(&folder.path().join("d/run.mcap"), "lasa_sine");
+    drawn(&folder.path().join("d/sub/run.mcap"), "lasa_zshape");
+    let before = contents(folder.path());
+    for (input, output, named) in [
+        (path("bag"), path("bag/bag_0.mcap"), path("bag/bag_0.mcap")),
+        (path("bag"), path("d/../bag/bag_0.mcap"), path("d/../bag/bag_0.mcap")),
+        (path("d"), path("d/sub"), path("d/sub/run.mcap")),
+    ] {
+        let (code, said) = refusal_of_replay(&[&input, "-o", &output]);
+        assert_eq!(code, 2, "{said}");
+        assert_eq!(said, format!("reorder: {named}: already an input or another output of this command\n"));
+        assert!(contents(folder.path()) == before, "{output}");
+    }
+}
+
+#[test]
+fn a_topic_that_is_named_twice_is_taken_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("bag.mcap");
+    drawn(&bag, "lasa_sine");
+    let output = folder.path().join("out.mcap");
+    let arguments = ["replay", bag.to_str().unwrap(), "--topic", "/tool", "--topic", "/tool", "--format", "json"];
+    let replayed = json_of(&reorder(&[&arguments[..], &["-o", output.to_str().unwrap()]].concat()));
+    assert_eq!(replayed["bags"][0]["sets"].as_array().unwrap().len(), 1);
+    assert!(topics(&output).contains_key("/reorder/ordered_poses"), "{:?}", topics(&output));
+}
+
+#[test]
+fn times_at_the_end_of_the_clock_are_replayed_like_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let (bags, target) = (folder.path().join("bags"), folder.path().join("out"));
+    fs::create_dir(&bags).unwrap();
+    drawn(&bags.join("early.mcap"), "lasa_sine");
+    let poses = recording("lasa_sine").0.iter().map(Into::into).collect();
+    let mut bag = BagWriter::create(bags.join("late.mcap")).unwrap();
+    bag.write("/scan", u64::MAX, &PoseArray { header: header(0), poses }).unwrap();
+    bag.finish().unwrap();
+    let arguments = ["replay", bags.to_str().unwrap(), "--robot", "ur5e", "-o", target.to_str().unwrap()];
+    let output = reorder(&[&arguments[..], &["--format", "json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(statuses(&json_of(&output)), ["done"; 2]);
+    let mut times = Vec::new();
+    let note = &mut |message: &BagMessage<'_>| {
+        times.push(message.log_time_ns());
+        Ok(())
+    };
+    assert!(BagReader::open(target.join("late.mcap")).unwrap().for_each(note).unwrap().is_empty());
+    assert!(times.len() > 100 && times.iter().all(|&time| time == u64::MAX));
 }
 
 fn statuses(value: &Value) -> Vec<&str> {

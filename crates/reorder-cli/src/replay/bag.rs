@@ -1,5 +1,6 @@
 //! One bag: its sets put in order, and the bag that is made of them.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use planner::manipulator::Robot;
@@ -57,7 +58,13 @@ pub(crate) fn replay(input: &Input, output: Option<&Path>, task: &Task, advance:
         return kept;
     }
     let name = input.path.display().to_string();
-    replay_anew(input, output, task, advance).unwrap_or_else(|error| BagSummary::broken(name, error))
+    caught(&name, || replay_anew(input, output, task, advance)).unwrap_or_else(|error| BagSummary::broken(name, error))
+}
+
+/// A fault of ours ends the bag that it meets, not the others of a run.
+fn caught<T>(name: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    let fault = || format!("{name}: the replay ended in an internal error, which is a bug: please report it");
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(fault()))
 }
 
 /// What an earlier run found, where its output is whole and would be the same again.
@@ -213,7 +220,7 @@ fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed) -> Result<u64, plann
     bag.write(&joint_topic("joint_trajectory"), start_ns, &trajectory_message(&plan.trajectory, stamped(start_ns)))?;
     let mut end_ns = start_ns;
     for point in &plan.trajectory.points {
-        end_ns = start_ns + (point.time_s * 1e9).round() as u64;
+        end_ns = start_ns.saturating_add((point.time_s * 1e9).round() as u64);
         let state = JointState {
             header: stamped(end_ns),
             name: plan.trajectory.joint_names.clone(),
@@ -224,4 +231,17 @@ fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed) -> Result<u64, plann
         bag.write(&joint_topic("joint_states"), end_ns, &state)?;
     }
     Ok(end_ns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::caught;
+
+    #[test]
+    fn a_panic_is_an_error_of_the_bag() {
+        assert_eq!(caught("x.mcap", || Ok(1)), Ok(1));
+        assert_eq!(caught::<u8>("x.mcap", || Err("no bag".to_owned())), Err("no bag".to_owned()));
+        let index = std::hint::black_box(3);
+        assert!(caught("x.mcap", || Ok([1, 2][index])).unwrap_err().starts_with("x.mcap: the replay ended"));
+    }
 }
