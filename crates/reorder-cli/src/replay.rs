@@ -122,6 +122,19 @@ fn outputs(arguments: &Arguments, inputs: &[Input]) -> Result<Vec<Option<PathBuf
         if is_file { output.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")) } else { output };
     let named = |error: std::io::Error| Failure::BadInput(format!("{}: {error}", folder.display()));
     if !is_file {
+        // The next run would find the outputs of this one among its bags.
+        let within = |searched: &&PathBuf| {
+            let searched = fs::canonicalize(searched).ok().filter(|path| path.is_dir());
+            let from = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+            let place = from.ancestors().find_map(|path| fs::canonicalize(path).ok());
+            place.zip(searched).is_some_and(|(place, searched)| place.starts_with(searched))
+        };
+        if let Some(searched) = arguments.bags.iter().find(within) {
+            let (folder, searched) = (folder.display(), searched.display());
+            return Err(Failure::BadInput(format!(
+                "{folder} lies in {searched}: outputs go where no bags are looked for"
+            )));
+        }
         fs::create_dir_all(folder).map_err(named)?;
     }
     remove_abandoned(folder).map_err(Failure::bad_input)?;

@@ -293,11 +293,16 @@ fn no_output_takes_the_place_of_a_file_of_any_input() {
     for (input, output, named) in [
         (path("bag"), path("bag/bag_0.mcap"), path("bag/bag_0.mcap")),
         (path("bag"), path("d/../bag/bag_0.mcap"), path("d/../bag/bag_0.mcap")),
-        (path("d"), path("d/sub"), path("d/sub/run.mcap")),
+        (path("d"), path("d/sub"), String::new()),
+        (path("d"), path("d/new"), String::new()),
     ] {
         let (code, said) = refusal_of_replay(&[&input, "-o", &output]);
         assert_eq!(code, 2, "{said}");
-        assert_eq!(said, format!("reorder: {named}: already an input or another output of this command\n"));
+        let sentence = match named.as_str() {
+            "" => format!("{output} lies in {input}: outputs go where no bags are looked for"),
+            named => format!("{named}: already an input or another output of this command"),
+        };
+        assert_eq!(said, format!("reorder: {sentence}\n"));
         assert!(contents(folder.path()) == before, "{output}");
     }
 }
