@@ -75,6 +75,8 @@ const tests = {
       const { page, close } = await open(browser, file, { colorScheme, reducedMotion: 'reduce' });
       const [a, b] = JSON.parse(given);
       await page.getByRole('button', { name: `${a} – ${b}` }).first().click();
+      // It comes with the next frame that is drawn.
+      await page.locator('#note').waitFor();
       assert.match(await page.locator('#note').textContent(), new RegExp(`^${a} – ${b}.{10}`));
       await page.locator('.layers').getByText('Poses').click();
       const [red, green, blue] = await page.evaluate(([i, j]) => {
