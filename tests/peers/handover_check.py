@@ -8,6 +8,8 @@ from trajectory_check import Trajectory, basis_rows, check_trajectory
 STAMP_ROUNDING_S = 2e-9
 # Of quintics through positions of some radians 10 ms apart: 60 eps 3 / 0.01^2 in the acceleration.
 ROUNDING = 1e-9
+# Before and after a hand-over, to see that the robot is under way.
+AROUND_NS = 500_000_000
 
 
 def state_at(trajectory, time_ns):
@@ -55,8 +57,12 @@ def check_handover(running, following, offset_ns, takes_over_s, limits):
             jump = float(np.abs(was - comes).max())
             if not jump <= tolerance:
                 problems.append(f"The {kind} jumps by {jump:.3g} at the {place}.")
-    if not np.abs(state_at(following, takes_over_ns)[1]).max() > 0.01:
-        problems.append("The robot hardly moves at the hand-over: that is a start from rest.")
+    # At one moment it may stand, as between the approach and the first pose; the hand-over must not wait for the rest at the end.
+    if not offset_ns + takes_over_ns < running.times_ns[-1] - AROUND_NS:
+        problems.append("The hand-over waits for the rest at the end.")
+    around = range(takes_over_ns - AROUND_NS, takes_over_ns + AROUND_NS + 1, AROUND_NS // 10)
+    if not max(np.abs(state_at(running, offset_ns + ns)[1]).max() for ns in around) > 0.01:
+        problems.append("The robot hardly moves around the hand-over: that is a start from rest.")
     later_ns = takes_over_ns + 500_000_000
     if np.abs(state_at(running, offset_ns + later_ns)[0] - state_at(following, later_ns)[0]).max() < 1e-4:
         problems.append("Half a second after the hand-over the robot still does what it did before.")

@@ -85,7 +85,14 @@ class HandOver(unittest.TestCase):
     def test_a_start_from_rest_is_noticed(self):
         running, _, _ = sound()
         said = check_handover(running, running, END_NS, 0.0, LIMITS)
+        self.assertTrue(any("rest at the end" in p for p in said), said)
+        said = check_handover(running, running, 2 * END_NS, 0.0, LIMITS)
         self.assertTrue(any("hardly moves" in p for p in said), said)
+
+    def test_a_moment_of_rest_on_the_way_is_no_start_from_rest(self):
+        there, back = quintic(END_NS, (0.0,) * 3, (1.0, 0.0, 0.0)), quintic(END_NS, (1.0, 0.0, 0.0), (0.2, 0.0, 0.0))
+        said = check_handover(executed(there, back, END_NS), quintic(END_NS, (1.0, 0.0, 0.0), (0.3, 0.0, 0.0)), END_NS, 0.0, LIMITS)
+        self.assertEqual(said, [])
 
 
 if __name__ == "__main__":

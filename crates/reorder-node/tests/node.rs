@@ -108,7 +108,7 @@ fn nothing_is_planned_for_a_robot_that_nobody_has_heard_of() {
 fn new_poses_take_over_from_the_trajectory_under_execution() {
     let domain = Domain(67);
     // Slow, so that much of the motion is left even where planning takes long.
-    let [scale, handover] = ["timing.acceleration_scale:=0.02", "handover:=true"];
+    let [scale, handover] = ["timing.acceleration_scale:=0.01", "handover:=true"];
     let node = domain.node(&[&PARAMETERS[..], &["-p", handover, "-p", scale]].concat());
     let robot = format!("{ROOT}/config/robots/ur5e");
     let [first, second] = ["lasa_sine", "lasa_angle"].map(|shape| format!("{ROOT}/tests/data/{shape}"));
