@@ -55,8 +55,8 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: Option<u32>) -> Outcome {
         Soak::Handovers => run_test(layout, "planner", "handover", cases),
         Soak::Executions => run_test(layout, "mujoco-sim", "random_executions", cases),
         Soak::Shuffled => run_test(layout, "planner", "shuffled_plans", cases),
-        Soak::Orders => run_test(layout, "reorder", "random_orders", cases),
-        Soak::Certified => run_test(layout, "reorder", "certified_orders", cases),
+        Soak::Orders => run_test(layout, "reorder", "suite random_orders::", cases),
+        Soak::Certified => run_test(layout, "reorder", "suite certified_orders::", cases),
         Soak::FuzzOrders => fuzz(layout, "orders", cases),
         Soak::FuzzTables => fuzz(layout, "tables", cases),
         Soak::Replay => run_test(layout, "reorder-cli", "replay", cases),
@@ -67,9 +67,12 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: Option<u32>) -> Outcome {
     }
 }
 
+/// Runs a test program, or of one what begins with a name after a space.
 fn run_test(layout: &Layout, package: &str, test: &str, cases: u32) -> Outcome {
     let mut cargo = layout.cargo();
-    cargo.args(["test", "--release", "--package", package, "--test", test, "--", "--nocapture", "--test-threads=1"]);
+    let (program, part) = test.split_once(' ').unwrap_or((test, ""));
+    cargo.args(["test", "--release", "--package", package, "--test", program, "--", part]);
+    cargo.args(["--nocapture", "--test-threads=1"]);
     let status = cargo.env("REORDER_SOAK_CASES", cases.to_string()).status().map_err(Failure::io("run", "cargo"))?;
     if status.success() { Ok(()) } else { Err(Failure::Command { what: format!("soak {test}"), status }) }
 }

@@ -13,11 +13,10 @@ pub(crate) fn lint(layout: &Layout) -> Outcome {
 
 pub(crate) fn test(layout: &Layout) -> Outcome {
     setup::run_for_tests(layout)?;
-    if has_nextest(layout) {
-        run(layout.cargo().args(["nextest", "run", "--workspace"]))?;
-    } else {
-        run(layout.cargo().args(["test", "--workspace", "--lib", "--bins", "--tests"]))?;
-    }
+    // Examples are linted, and tests call what they do.
+    let tested = ["--workspace", "--lib", "--bins", "--tests"];
+    let runner: &[&str] = if has_nextest(layout) { &["nextest", "run"] } else { &["test"] };
+    run(layout.cargo().args(runner).args(tested))?;
     run(layout.cargo().args(["test", "--workspace", "--doc"]))
 }
 

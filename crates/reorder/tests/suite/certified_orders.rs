@@ -1,11 +1,10 @@
 //! What is certified is right: dense samples of random curves until so many of their orders are certified. `cargo xtask soak certified`
 //! runs thousands, the test a seeded sample.
 
-mod support;
-
 use reorder::Verdict;
-use support::Random;
-use support::trials::{Mix, Trial, any_trial, cases, print_by_kind};
+
+use crate::support::Random;
+use crate::support::trials::{Mix, Trial, any_trial, cases, print_by_kind};
 
 #[test]
 fn certified_orders_are_right() {

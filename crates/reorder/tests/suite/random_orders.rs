@@ -3,13 +3,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use reorder::{MethodChoice, Options, Verdict, nearest_chain, nn_crust, order};
 use se3_geom::{Pose, Se3};
-use support::harmonics::*;
-use support::trials::{MOST_POINTS, Mix, Trial, any_trial, between, cases, print_by_kind, retraced, share, tried};
-use support::{Random, neighbours, shuffled, unshuffled};
+
+use crate::support::harmonics::*;
+use crate::support::trials::{
+    MOST_POINTS, Mix, Trial, any_trial, between, cases, print_by_kind, retraced, share, tried,
+};
+use crate::support::{Random, neighbours, shuffled, unshuffled};
 
 /// Upper ends of the classes of ε̂.
 const CLASSES: [f64; 5] = [0.4, 1.25, 2.0, 4.0, f64::INFINITY];

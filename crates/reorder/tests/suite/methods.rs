@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::{NoCurve, Options, crust, minimum_spanning_tree, nearest_chain, nn_crust, order};
 use se3_geom::nalgebra::{Vector2, Vector3};
 use se3_geom::{Manifold, R2, R3, Se3, So3, Sphere};
-use support::harmonics::*;
-use support::{Random, neighbours};
+
+use crate::support::harmonics::*;
+use crate::support::{Random, neighbours};
 
 fn loop_edges(n: usize) -> Vec<[usize; 2]> {
     neighbours(&(0..n).collect::<Vec<_>>(), true).into_iter().map(|(a, b)| [a, b]).collect()
@@ -114,7 +113,7 @@ fn dense_loops_of_up_to_eight_points_are_the_shortest_tours() {
                 .map(|t| Vector2::new(1.2 * t.cos(), t.sin()))
                 .collect();
             let rows = random.permutation(n);
-            let mixed = support::shuffled(&points, &rows);
+            let mixed = crate::support::shuffled(&points, &rows);
             let closed = Options { topology: reorder::TopologyChoice::Closed, ..Options::default() };
             let found = order(&R2::default(), &mixed, &closed).unwrap().order;
             let length =

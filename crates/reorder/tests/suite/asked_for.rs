@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::{
@@ -12,7 +10,8 @@ use reorder::{
 };
 use se3_geom::nalgebra::{Vector2, Vector3};
 use se3_geom::{Manifold, Pose, R2, R3, Se3};
-use support::{Random, helix_pose, loop_pose, neighbours, shuffled, unshuffled};
+
+use crate::support::{Random, helix_pose, loop_pose, neighbours, shuffled, unshuffled};
 
 fn by(method: MethodChoice) -> Options {
     Options { method, ..Options::default() }

@@ -4,22 +4,22 @@
 #![allow(clippy::duplicate_mod)]
 
 #[allow(dead_code)]
-#[path = "../examples/figure_7_1.rs"]
+#[path = "../../examples/figure_7_1.rs"]
 mod figure_7_1;
 #[allow(dead_code)]
-#[path = "../examples/figures_2_1_2_2_5_4.rs"]
+#[path = "../../examples/figures_2_1_2_2_5_4.rs"]
 mod figures_2_1_2_2_5_4;
 #[allow(dead_code)]
-#[path = "../examples/figures_7_2_to_7_4.rs"]
+#[path = "../../examples/figures_7_2_to_7_4.rs"]
 mod figures_7_2_to_7_4;
 #[allow(dead_code)]
-#[path = "../examples/figures_7_5_to_7_7.rs"]
+#[path = "../../examples/figures_7_5_to_7_7.rs"]
 mod figures_7_5_to_7_7;
 #[allow(dead_code)]
-#[path = "../examples/figures_7_8_to_7_9.rs"]
+#[path = "../../examples/figures_7_8_to_7_9.rs"]
 mod figures_7_8_to_7_9;
 #[allow(dead_code)]
-#[path = "../examples/success_by_epsilon.rs"]
+#[path = "../../examples/success_by_epsilon.rs"]
 mod success_by_epsilon;
 
 use std::error::Error;

@@ -1,13 +1,12 @@
 //! Curves that run exactly over themselves: no distance tells one pass from another, but the gaps do.
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::Verdict;
-use support::Random;
-use support::plane::{in_plane, line, reasons};
+
+use crate::support::Random;
+use crate::support::plane::{in_plane, line, reasons};
 
 /// `count` points of an ellipse from `phase` on, `turns` times around.
 fn laps(count: u32, turns: f64, phase: f64) -> Vec<(f64, f64)> {

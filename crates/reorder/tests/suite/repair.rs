@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::{
@@ -11,8 +9,9 @@ use reorder::{
 };
 use se3_geom::nalgebra::{UnitQuaternion, Vector2, Vector3};
 use se3_geom::{Manifold, Pose, R2, Se3};
-use support::harmonics::{Measured, Spacing, pose_curve, with_noise};
-use support::{Random, neighbours, shuffled, unshuffled};
+
+use crate::support::harmonics::{Measured, Spacing, pose_curve, with_noise};
+use crate::support::{Random, neighbours, shuffled, unshuffled};
 
 fn is_right(found: &Ordering, rows: &[usize], closed: bool) -> bool {
     let truth = neighbours(&(0..rows.len()).collect::<Vec<_>>(), closed);

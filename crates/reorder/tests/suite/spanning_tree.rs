@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::petgraph::algo::min_spanning_tree;
@@ -13,7 +11,8 @@ use reorder::petgraph::visit::EdgeRef;
 use reorder::{OrderError, Tree, minimum_spanning_tree};
 use se3_geom::nalgebra::{Isometry2, Similarity2, UnitQuaternion, Vector3};
 use se3_geom::{Manifold, Pose, R3, Se2, Se3, Sim2, So3, Sphere};
-use support::{Random, shuffled};
+
+use crate::support::{Random, shuffled};
 
 fn kruskal_weight<M: Manifold>(manifold: &M, points: &[M::Point]) -> f64 {
     let mut complete = UnGraph::<usize, f64>::default();

@@ -2,14 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::{Options, Ordering, TopologyChoice, Verdict, order, order_poses};
 use se3_geom::nalgebra::Vector2;
 use se3_geom::{Pose, R2, R3};
-use support::{Random, helix_pose};
+
+use crate::support::{Random, helix_pose};
 
 fn in_plane(points: &[(f64, f64)]) -> Ordering {
     let points: Vec<_> = points.iter().map(|&(x, y)| Vector2::new(x, y)).collect();

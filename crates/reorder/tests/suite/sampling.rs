@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::{PI, TAU};
 
 use reorder::{Options, Ordering, Repair, Topology, Verdict, order};
 use se3_geom::nalgebra::{UnitQuaternion, Vector2, Vector3};
 use se3_geom::{Manifold, R2, R3, So3, Sphere};
-use support::Random;
-use support::harmonics::*;
+
+use crate::support::Random;
+use crate::support::harmonics::*;
 
 fn found<M: Manifold>(manifold: &M, points: &[M::Point]) -> Ordering {
     order(manifold, points, &Options::default()).unwrap()

@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::{Options, OrderError, Topology, order_components};
 use se3_geom::R2;
 use se3_geom::nalgebra::Vector2;
-use support::harmonics::*;
-use support::{Random, neighbours, shuffled};
+
+use crate::support::harmonics::*;
+use crate::support::{Random, neighbours, shuffled};
 
 fn ring(x: f64, radius: f64, n: u32) -> Vec<Vector2<f64>> {
     (0..n)

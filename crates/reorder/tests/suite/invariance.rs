@@ -11,8 +11,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
@@ -21,8 +19,9 @@ use proptest::test_runner::{RngSeed, TestCaseError, TestRunner};
 use reorder::{Options, Ordering, Repair, Topology, Verdict, Weight, order, order_weighted};
 use se3_geom::nalgebra::{Isometry2, Isometry3, Similarity2, UnitQuaternion, Vector2, Vector3};
 use se3_geom::{R3, Se2, Se3, Sim2, So3};
-use support::harmonics::{Harmonics, pose_curve, space_curve};
-use support::{Random, neighbours, shuffled, unshuffled};
+
+use crate::support::harmonics::{Harmonics, pose_curve, space_curve};
+use crate::support::{Random, neighbours, shuffled, unshuffled};
 
 const UNREPAIRED: Options = Options {
     topology: reorder::TopologyChoice::Auto,

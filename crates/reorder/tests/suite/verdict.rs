@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::{Options, Repair, Topology, Verdict, order, order_poses};
 use se3_geom::nalgebra::{UnitQuaternion, Vector2, Vector3};
 use se3_geom::{Pose, R2, R3, So3};
-use support::plane::{doubted, in_plane, line, reasons, tree_in_plane};
-use support::{Random, neighbours, shuffled, unshuffled};
+
+use crate::support::plane::{doubted, in_plane, line, reasons, tree_in_plane};
+use crate::support::{Random, neighbours, shuffled, unshuffled};
 
 #[test]
 fn verdicts_rank() {

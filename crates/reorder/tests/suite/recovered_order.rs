@@ -2,13 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use reorder::{Options, Ordering, Repair, Topology, TopologyChoice, Verdict, order, order_poses};
 use se3_geom::nalgebra::{UnitQuaternion, Vector3};
 use se3_geom::{Manifold, Pose, R3, Se3, So3};
-use support::permutations::permutations;
-use support::{Random, helix_pose, loop_pose, neighbours, shuffled, unshuffled};
+
+use crate::support::permutations::permutations;
+use crate::support::{Random, helix_pose, loop_pose, neighbours, shuffled, unshuffled};
 
 fn helix(n: usize) -> Vec<Pose> {
     (0..n).map(|k| helix_pose(0.05 * k as f64)).collect()

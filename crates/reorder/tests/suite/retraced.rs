@@ -1,11 +1,10 @@
 //! A stroke drawn back over, between or beside its own points.
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use reorder::Verdict;
-use support::Random;
-use support::plane::{in_plane, line, reasons};
+
+use crate::support::Random;
+use crate::support::plane::{in_plane, line, reasons};
 
 /// A pen that draws back over its own line with other steps: every tree edge leads to the next point on the line, and yet the
 /// order is wrong. Steps in the golden ratio fall at all fractions of the first steps, however the second pass starts.

@@ -2,14 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use reorder::{Options, OrderError, TopologyChoice, Weight, automatic_weight, order, order_poses, order_weighted};
 use se3_geom::nalgebra::{
     Isometry2, Matrix2, Quaternion, SVector, Similarity2, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4,
 };
 use se3_geom::{Euclidean, HeightJet, Manifold, MongePatch, Pose, R2, R3, Se2, Se3, Sim2, So2, So3, Sphere};
-use support::helix_pose;
+
+use crate::support::helix_pose;
 
 fn refusal(points: &[Vector3<f64>], topology: TopologyChoice, start: Option<usize>) -> OrderError {
     order(&R3::default(), points, &Options { topology, start, ..Options::default() }).unwrap_err()

@@ -1,15 +1,14 @@
 //! Whether a curve returns to its start, and when that is in doubt.
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use reorder::{Options, Topology, TopologyChoice, Verdict, order};
 use se3_geom::R2;
 use se3_geom::nalgebra::Vector2;
-use support::Random;
-use support::plane::{doubted, in_plane, reasons};
+
+use crate::support::Random;
+use crate::support::plane::{doubted, in_plane, reasons};
 
 #[test]
 fn ends_that_come_near_leave_the_topology_in_doubt() {
