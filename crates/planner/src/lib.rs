@@ -22,6 +22,7 @@
 mod config;
 mod exchange;
 mod joints;
+mod markers;
 mod message;
 mod motion;
 mod pipeline;
@@ -32,6 +33,7 @@ mod session;
 pub use config::{Config, OnRefusal};
 pub use exchange::{Counters, Input, Job, Outcome, Output, RawPose};
 pub use manipulator;
+pub use markers::{Drawn, markers};
 pub use message::trajectory_message;
 pub use motion::{Handover, Motion};
 pub use pipeline::{Plan, Request, interpolate, path_along, plan};

@@ -2,7 +2,6 @@
 
 mod bag;
 mod inputs;
-mod markers;
 mod score;
 mod summary;
 

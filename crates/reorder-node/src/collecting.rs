@@ -1,5 +1,6 @@
 //! Poses that arrive one by one, until they make a set.
 
+use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use r2r::geometry_msgs::msg::{Pose, PoseArray, PoseStamped};
@@ -12,8 +13,9 @@ use crate::message::stamp_ns;
 pub(crate) struct Collecting {
     /// The frame of all of them, and the latest stamp.
     header: Header,
-    /// With their stamps in ns.
-    poses: Vec<(i64, Pose)>,
+    poses: Vec<Pose>,
+    /// Where the pose of a stamp in ns is; stamps of zero say nothing.
+    stamped: HashMap<i64, usize>,
     /// When the last arrived.
     arrived: Option<Instant>,
 }
@@ -46,15 +48,18 @@ impl Collecting {
             self.header = header;
         }
         let is_full = self.poses.len() > most;
-        match self.poses.iter_mut().rfind(|(known, _)| *known == stamp && stamp != 0) {
-            Some((_, known)) if *known == pose => Taken::Repeated,
-            Some((_, known)) => {
+        match self.stamped.get(&stamp).map(|&place| &mut self.poses[place]) {
+            Some(known) if *known == pose => Taken::Repeated,
+            Some(known) => {
                 *known = pose;
                 Taken::Corrected
             }
             None if is_full => Taken::TooMany,
             None => {
-                self.poses.push((stamp, pose));
+                if stamp != 0 {
+                    self.stamped.insert(stamp, self.poses.len());
+                }
+                self.poses.push(pose);
                 Taken::Added
             }
         }
@@ -73,8 +78,8 @@ impl Collecting {
 
     /// The set, with when its last pose arrived; the next pose begins another.
     pub(crate) fn finish(&mut self) -> Option<(Instant, PoseArray)> {
-        let Self { header, poses, arrived } = std::mem::take(self);
-        Some((arrived?, PoseArray { header, poses: poses.into_iter().map(|(_, pose)| pose).collect() }))
+        let Self { header, poses, arrived, .. } = std::mem::take(self);
+        Some((arrived?, PoseArray { header, poses }))
     }
 }
 

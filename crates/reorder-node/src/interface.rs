@@ -4,20 +4,21 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use futures::stream::{BoxStream, StreamExt, select_all};
-use planner::{Input, Motion, Outcome, Report};
+use planner::pose_bag::encode;
+use planner::pose_bag::msg::{self, MarkerArray, Message};
+use planner::{Drawn, Input, Motion, Outcome, Report};
 use r2r::diagnostic_msgs::msg::DiagnosticArray;
 use r2r::geometry_msgs::msg::{PoseArray, PoseStamped};
 use r2r::nav_msgs::msg::Path;
 use r2r::sensor_msgs::msg::JointState;
+use r2r::std_msgs::msg::Header;
 use r2r::std_srvs::srv::Trigger;
 use r2r::tf2_msgs::msg::TFMessage;
 use r2r::trajectory_msgs::msg::JointTrajectory;
-use r2r::visualization_msgs::msg::MarkerArray;
-use r2r::{Node, Publisher, QosProfile, ServiceRequest};
+use r2r::{Node, Publisher, PublisherUntyped, QosProfile, ServiceRequest};
 
 use crate::inbox::{Emptying, Inbox};
 use crate::managed::{LifeCycleCall, LifeCycleServices};
-use crate::markers;
 use crate::message::{header, path_message, pose_array};
 use crate::parameters::{ParameterCall, ParameterServices};
 
@@ -105,7 +106,8 @@ pub(crate) struct Publishers {
     ordered_poses: Publisher<PoseArray>,
     path: Publisher<Path>,
     report: Publisher<r2r::std_msgs::msg::String>,
-    markers: Publisher<MarkerArray>,
+    /// Of messages that are bytes already: the planner draws them with types of its own.
+    markers: PublisherUntyped,
     diagnostics: Publisher<DiagnosticArray>,
 }
 
@@ -117,7 +119,7 @@ impl Publishers {
             ordered_poses: node.create_publisher("~/ordered_poses", latched())?,
             path: node.create_publisher("~/path", latched())?,
             report: node.create_publisher("~/report", latched())?,
-            markers: node.create_publisher("~/markers", latched())?,
+            markers: node.create_publisher_untyped("~/markers", MarkerArray::TYPE, latched())?,
             diagnostics: node.create_publisher("/diagnostics", QosProfile::default().reliable())?,
         })
     }
@@ -144,7 +146,9 @@ impl Publishers {
         if let Some(motion) = &outcome.motion {
             send(motion)?;
         }
-        self.markers.publish(&markers::markers(outcome, &header))
+        let Header { stamp, frame_id } = header;
+        let stamp = msg::Time { sec: stamp.sec, nanosec: stamp.nanosec };
+        self.show(&planner::markers(outcome, &msg::Header { stamp, frame_id }))
     }
 
     pub(crate) fn publish_trajectory(&self, trajectory: &JointTrajectory) -> r2r::Result<()> {
@@ -154,12 +158,17 @@ impl Publishers {
     /// Empties the latched topics, so that latecomers do not take up what no longer holds.
     pub(crate) fn withdraw(&self) -> r2r::Result<()> {
         self.report.publish(&r2r::std_msgs::msg::String { data: "{}".into() })?;
-        self.markers.publish(&markers::nothing())?;
+        self.show(&Drawn { poses: &[], ordering: None, curve: &[], refusal: None }.markers(&msg::Header::default()))?;
         self.withdraw_poses()
     }
 
     pub(crate) fn tell(&self, diagnostics: &DiagnosticArray) -> r2r::Result<()> {
         self.diagnostics.publish(diagnostics)
+    }
+
+    fn show(&self, markers: &MarkerArray) -> r2r::Result<()> {
+        let bytes = encode(markers).map_err(|_| r2r::Error::RCL_RET_INVALID_ARGUMENT)?;
+        self.markers.publish_raw(&bytes)
     }
 
     fn withdraw_poses(&self) -> r2r::Result<()> {

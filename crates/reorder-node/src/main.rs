@@ -13,7 +13,6 @@ mod interface;
 mod lifecycle;
 mod log;
 mod managed;
-mod markers;
 mod message;
 mod node;
 mod parameters;

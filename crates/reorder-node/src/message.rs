@@ -70,7 +70,7 @@ pub(crate) fn header(frame_id: &str, stamp_ns: i64) -> Header {
     Header { stamp: time(stamp_ns), frame_id: frame_id.to_owned() }
 }
 
-pub(crate) fn point(p: &Vector3<f64>) -> geometry::Point {
+fn point(p: &Vector3<f64>) -> geometry::Point {
     geometry::Point { x: p.x, y: p.y, z: p.z }
 }
 

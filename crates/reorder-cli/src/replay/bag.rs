@@ -10,11 +10,10 @@ use planner::pose_bag::msg::{
 use planner::pose_bag::{BagReader, BagWriter, OfferedQos, PoseSet, Selection, msg, recover_poses};
 use planner::reorder::{Options, Ordering, Verdict, Weight, order_weighted};
 use planner::se3_geom::{Pose, Se3};
-use planner::{Config, Plan, Request, interpolate, path_along, plan, trajectory_message};
+use planner::{Config, Drawn, Plan, Request, interpolate, path_along, plan, trajectory_message};
 use serde::{Deserialize, Serialize};
 
 use crate::replay::inputs::{Input, InputFile};
-use crate::replay::markers::markers;
 use crate::replay::score::Score;
 use crate::replay::summary::{BagSummary, SetSummary, Status, TrajectorySummary};
 
@@ -213,7 +212,8 @@ fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed) -> Result<u64, plann
     bag.add_topic::<MarkerArray>(&topic("markers"), OfferedQos::TransientLocal)?;
     bag.write(&topic("ordered_poses"), start_ns, &PoseArray { header: header(start_ns), poses: ordered })?;
     bag.write(&topic("path"), start_ns, &PathMessage { header: header(start_ns), poses: curve })?;
-    bag.write(&topic("markers"), start_ns, &markers(&header(start_ns), &one.set.poses, ordering, &one.curve))?;
+    let drawn = Drawn { poses: &one.set.poses, ordering: Some(ordering), curve: &one.curve, refusal: None };
+    bag.write(&topic("markers"), start_ns, &drawn.markers(&header(start_ns)))?;
     let Some(plan) = &one.plan else { return Ok(start_ns) };
     let joint_topic = |name: &str| format!("/{name}{of}");
     let stamped = |at_ns| Header { frame_id: String::new(), ..header(at_ns) };
