@@ -26,6 +26,7 @@ pub mod msg;
 mod pending;
 mod pose_set;
 mod pose_sets;
+mod pose_topic;
 mod schema;
 mod sqlite;
 mod table;

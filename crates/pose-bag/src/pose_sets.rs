@@ -1,6 +1,5 @@
 //! Sets of poses out of the messages of a bag.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use se3_geom::Pose;
@@ -8,8 +7,9 @@ use se3_geom::Pose;
 use crate::BagError;
 use crate::bag_reader::BagReader;
 use crate::channel::BagMessage;
-use crate::msg::{self, Message};
+use crate::msg;
 use crate::pose_set::{Grouping, Origin, PoseSet, Selection};
+use crate::pose_topic::{Kind, Single, not_poses, pair, topic_of};
 
 /// Frame pairs to choose from that are told.
 const MAX_PAIRS: usize = 100;
@@ -18,11 +18,7 @@ const MAX_PAIRS: usize = 100;
 ///
 /// Messages are taken in the order in which they were recorded.
 pub(crate) fn read_bag(bag: &BagReader, selection: &Selection) -> Result<(Vec<PoseSet>, Vec<BagError>), BagError> {
-    let topic = match (&selection.topic, &selection.frames) {
-        (Some(topic), _) => topic.clone(),
-        (None, Some(frames)) => choose_transforms(bag, frames)?,
-        (None, None) => choose(bag)?,
-    };
+    let topic = topic_of(bag, selection)?;
     let mut collector = Collector { selection, sets: Vec::new(), singles: Vec::new(), frame: None, pairs: Vec::new() };
     let mut topic_type: Option<String> = None;
     let losses = bag.for_each(&mut |message| {
@@ -51,108 +47,6 @@ pub(crate) fn read_bag(bag: &BagReader, selection: &Selection) -> Result<(Vec<Po
         return Err(losses.into_iter().next().unwrap_or_else(|| BagError::Empty { file: bag.name().to_owned() }));
     }
     Ok((sets, losses))
-}
-
-fn not_poses(bag: &BagReader, topic: &str) -> Result<BagError, BagError> {
-    let topics = list(&bag.topics()?.0, |_| true);
-    Ok(BagError::NotAPoseTopic { file: bag.name().to_owned(), topic: topic.to_owned(), topics })
-}
-
-/// What a message with poses is. Where no topic is named, a later kind is chosen only where there is none of an earlier: a path is
-/// mostly made of the poses, and transforms are everywhere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
-    Array,
-    Single(Single),
-    Path,
-    Transforms,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Single {
-    Stamped,
-    WithCovariance,
-    Odometry,
-}
-
-impl Kind {
-    fn of(message_type: &str) -> Option<Self> {
-        Some(match message_type {
-            msg::PoseArray::TYPE => Self::Array,
-            msg::PoseStamped::TYPE => Self::Single(Single::Stamped),
-            msg::PoseWithCovarianceStamped::TYPE => Self::Single(Single::WithCovariance),
-            msg::Odometry::TYPE => Self::Single(Single::Odometry),
-            msg::Path::TYPE => Self::Path,
-            msg::TfMessage::TYPE => Self::Transforms,
-            _ => return None,
-        })
-    }
-
-    fn rank(self) -> u8 {
-        match self {
-            Self::Array | Self::Single(_) => 0,
-            Self::Path => 1,
-            Self::Transforms => 2,
-        }
-    }
-}
-
-fn choose(bag: &BagReader) -> Result<String, BagError> {
-    let (topics, losses) = bag.topics()?;
-    let kinds: Vec<_> = topics.iter().filter_map(|(topic, of)| Some((topic, Kind::of(of)?))).collect();
-    let file = || bag.name().to_owned();
-    let Some(rank) = kinds.iter().map(|(_, kind)| kind.rank()).min() else {
-        let none = || BagError::NoPoseTopic { file: file(), topics: list(&topics, |_| true) };
-        return Err(losses.into_iter().next().unwrap_or_else(none));
-    };
-    let mut foremost = kinds.iter().filter(|(_, kind)| kind.rank() == rank);
-    match (foremost.next(), foremost.next()) {
-        (Some((topic, _)), None) => Ok((*topic).clone()),
-        _ => Err(BagError::SeveralPoseTopics { file: file(), topics: list(&topics, |of| Kind::of(of).is_some()) }),
-    }
-}
-
-/// The topic with the transforms between two frames.
-fn choose_transforms(bag: &BagReader, frames: &(String, String)) -> Result<String, BagError> {
-    let (mut topics, losses) = bag.topics()?;
-    topics.retain(|_, message_type| message_type == msg::TfMessage::TYPE);
-    let mut found = topics.clone();
-    // Of a single one it is said later which pairs it has.
-    if topics.len() > 1 {
-        found.clear();
-        bag.for_each(&mut |message| {
-            let Some((topic, of)) =
-                topics.get_key_value(message.topic()).filter(|(topic, _)| !found.contains_key(*topic))
-            else {
-                return Ok(());
-            };
-            if message.decode::<msg::TfMessage>()?.transforms.iter().any(|transform| pair(transform) == *frames) {
-                found.insert(topic.clone(), of.clone());
-            }
-            Ok(())
-        })?;
-    }
-    let file = bag.name().to_owned();
-    match found.len() {
-        0 => Err(losses.into_iter().next().unwrap_or_else(|| {
-            let (frames, topics) = (format!("{}:{}", frames.0, frames.1), list(&topics, |_| true));
-            BagError::NoTransforms { file, frames, topics }
-        })),
-        1 => Ok(found.into_keys().collect()),
-        _ => Err(BagError::SeveralPoseTopics { file, topics: list(&found, |_| true) }),
-    }
-}
-
-/// Parent and child frame, without the leading slashes of old.
-fn pair(transform: &msg::TransformStamped) -> (String, String) {
-    let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
-    (bare(&transform.header.frame_id), bare(&transform.child_frame_id))
-}
-
-fn list(topics: &BTreeMap<String, String>, is_listed: impl Fn(&str) -> bool) -> String {
-    let listed = topics.iter().filter(|(_, message_type)| is_listed(message_type));
-    let listed: Vec<_> = listed.map(|(topic, message_type)| format!("{topic} ({message_type})")).collect();
-    if listed.is_empty() { "none".to_owned() } else { listed.join(", ") }
 }
 
 /// A pose from a message that holds one.
