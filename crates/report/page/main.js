@@ -103,7 +103,8 @@ if (picture) {
   }
   byId('colouring').addEventListener('change', (event) => picture.colourBy(event.target.value));
   const unit = data.axes[0].includes('/ m') ? ' m' : '';
-  byId('axes').textContent = `${data.axes.map((axis) => axis.split(' ')[0]).join(', ')} · grid ${Number(picture.grid.step.toPrecision(2))}${unit}`;
+  const around = data.around ? ` · around ${data.around.map((x) => fixed(x, 3)).join(', ')}${unit}` : '';
+  byId('axes').textContent = `${data.axes.map((axis) => axis.split(' ')[0]).join(', ')} · grid ${Number(picture.grid.step.toPrecision(2))}${unit}${around}`;
 } else document.querySelector('.tools').hidden = true;
 
 const toSegment = (p, a, b) => {

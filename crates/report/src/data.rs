@@ -25,6 +25,8 @@ pub(crate) struct Data<'a> {
     closed: bool,
     axes: [&'static str; 3],
     seen_from: [f64; 3],
+    /// What places are relative to, where they are far from zero: seven digits would not tell them from each other.
+    around: Option<[f64; 3]>,
     places: Packed,
     directions: Packed,
     order: Packed,
@@ -74,6 +76,9 @@ impl<'a> Data<'a> {
         let Report { name, points, ordering, edges, spline, robot, outcome, simulation } = *report;
         let plan = outcome.and_then(Result::ok);
         let flat = |vectors: &[Vector3<f64>]| Packed::single(vectors.iter().flat_map(|v| [v.x, v.y, v.z]));
+        // An arm stands at zero.
+        let around = if robot.is_none() { points.far_middle() } else { None };
+        let relative = |place: Vector3<f64>| place - around.unwrap_or_default();
         let run = simulation.zip(plan).map(|(simulation, plan)| simulation.of(&plan.trajectory)).transpose()?;
         Ok(Self {
             name,
@@ -82,13 +87,14 @@ impl<'a> Data<'a> {
             closed: ordering.topology == Topology::Closed,
             axes: points.axes,
             seen_from: points.seen_from().into(),
-            places: flat(&points.places),
+            around: around.map(Into::into),
+            places: flat(&points.places.iter().copied().map(relative).collect::<Vec<_>>()),
             directions: flat(&points.directions),
             order: Packed::index(ordering.order.iter().copied()),
             edges: Edges::of(edges),
             doubts: ordering.doubts.iter().map(|doubt| Doubt { at: doubt.at, why: &doubt.why }).collect(),
             certificate: certificate(ordering, edges),
-            spline: spline.map(Spline::of),
+            spline: spline.map(|spline| Spline::of(spline, relative)),
             arm: robot.map(Arm::of),
             plan: plan.map(|plan| Planned::of(plan, ordering)),
             refusal: outcome.and_then(Result::err).map(Refusal::to_string),
@@ -108,7 +114,7 @@ impl Edges {
 }
 
 impl Spline {
-    fn of(spline: &PoseSpline) -> Self {
+    fn of(spline: &PoseSpline, relative: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Self {
         let knots = spline.knots();
         let segments = knots.len().saturating_sub(1).max(1);
         let parts = (SPLINE_POINTS / segments).clamp(1, SPLINE_POINTS_PER_SEGMENT);
@@ -119,7 +125,7 @@ impl Spline {
         });
         let last = (segments as f64, spline.domain().1);
         let samples: Vec<(f64, f64)> = inner.chain([last]).collect();
-        let place = |&(_, t): &(f64, f64)| <[f64; 3]>::from(spline.pose(t).translation.vector);
+        let place = |&(_, t): &(f64, f64)| <[f64; 3]>::from(relative(spline.pose(t).translation.vector));
         Self {
             places: Packed::single(samples.iter().flat_map(place)),
             shares: Packed::single(samples.iter().map(|(passed, _)| passed / segments as f64)),

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{Points, explain};
 use planner::reorder::{EdgeFigures, Options, Ordering, order_poses};
-use planner::se3_geom::{Pose, Se3};
+use planner::se3_geom::{Pose, Se3, nalgebra};
 
 const LIBRARY: &str = "/* Three.js Authors */ exports.WebGLRenderer = 1;";
 
@@ -16,12 +16,15 @@ fn ordered(poses: &[Pose]) -> (Ordering, Vec<EdgeFigures>) {
 }
 
 fn page_named(name: &str, why: Option<&str>) -> String {
-    let poses = poses();
-    let (mut ordering, edges) = ordered(&poses);
+    page_of(&poses(), name, why)
+}
+
+fn page_of(poses: &[Pose], name: &str, why: Option<&str>) -> String {
+    let (mut ordering, edges) = ordered(poses);
     if let Some(why) = why {
         ordering.doubts.push(planner::reorder::Doubt { at: [0, 1], why: why.to_owned() });
     }
-    let points = Points::of_poses(&poses);
+    let points = Points::of_poses(poses);
     let report = Report {
         name,
         points: &points,
@@ -81,6 +84,23 @@ fn numbers_come_back_to_seven_digits() {
             assert!((f64::from(*drawn) - exact).abs() <= 6e-8 * exact.abs(), "{drawn} for {exact}");
         }
     }
+}
+
+/// On a map in UTM coordinates single numbers are half a metre apart.
+#[test]
+fn points_far_from_zero_keep_their_shape() {
+    let far = nalgebra::Vector3::new(4.3e5, 5.4e6, 0.0);
+    let mapped: Vec<Pose> =
+        poses().iter().map(|pose| Pose::from_parts((pose.translation.vector + far).into(), pose.rotation)).collect();
+    let data = data_of(&page_of(&mapped, "map", None));
+    let bytes = STANDARD.decode(data["places"].as_str().unwrap()).unwrap();
+    let xs = bytes.chunks(12).map(|place| f64::from(f32::from_le_bytes(place[..4].try_into().unwrap())));
+    let around = data["around"][0].as_f64().unwrap();
+    for (x, pose) in xs.zip(&mapped) {
+        // Of the difference of two numbers of 4e5, and of its seven digits.
+        assert!((x - (pose.translation.vector.x - around)).abs() < 1e-10 + 6e-8 * 0.12, "{x}");
+    }
+    assert!(data_of(&page_named("near", None))["around"].is_null());
 }
 
 #[test]

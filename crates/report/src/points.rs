@@ -24,6 +24,15 @@ impl Points {
         }
     }
 
+    /// The middle of the box around all, where it is farther from zero than hundred times the box is wide: there the seven digits of the
+    /// picture's numbers leave less than five to it.
+    pub(crate) fn far_middle(&self) -> Option<Vector3<f64>> {
+        let least = self.places.iter().fold(Vector3::repeat(f64::INFINITY), |least, place| least.inf(place));
+        let most = self.places.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |most, place| most.sup(place));
+        let middle = 0.5 * (least + most);
+        (middle.norm() > 100.0 * (most - least).norm() && middle.iter().all(|x| x.is_finite())).then_some(middle)
+    }
+
     /// The direction from which most of the points is seen: the normal of the plane they come nearest to, from above.
     pub(crate) fn seen_from(&self) -> Vector3<f64> {
         let n = self.places.len().max(1) as f64;
