@@ -1,7 +1,7 @@
 //! Everything that can go wrong between a robot description and a legal trajectory.
 
 use crate::audit::{Audit, AuditRules};
-use crate::excess::{beyond, too_weak};
+use crate::excess::{beyond, figure, too_weak};
 use crate::reach::OutOfReach;
 
 /// Why there is no robot, no joint path or no trajectory. Pose indices count from 0 along the curve.
@@ -184,7 +184,8 @@ pub enum ManipulatorError {
     },
     /// The way to a pose leads through or too near a singular configuration.
     #[error(
-        "on the way to pose {pose} the arm comes too close to a singularity: least singular value of its Jacobian {singular_value:.2e}, at least {bound:.2e} is asked for"
+        "on the way to pose {pose} the arm comes too close to a singularity: least singular value of its Jacobian {singular_value:.2e}, {} less than the {bound:.2e} asked for",
+        figure(*bound - *singular_value)
     )]
     Singular {
         /// Index of the pose.

@@ -21,7 +21,9 @@ pub struct Inertia {
 
 impl Inertia {
     /// A body of given mass (kg), centre of mass (m) and symmetric inertia tensor about the centre of mass (kg·m², axes of the frame,
-    /// products of inertia with the sign that makes the tensor symmetric positive semidefinite, as in URDF and MJCF).
+    /// products of inertia with the sign that makes the tensor symmetric positive semidefinite, as in URDF and MJCF). That no principal
+    /// moment exceeds the sum of the others is not asked for: published descriptions break it by their rounding, and motion needs none
+    /// of it.
     ///
     /// # Errors
     /// [`ManipulatorError::Inertia`] for a number that is not finite, a negative mass, or a tensor that is not symmetric positive
