@@ -29,11 +29,7 @@ impl Ask<'_> {
         match &rows.points {
             Points::Plane(points) => self.unweighted(&Euclidean::<2>, points, coordinates),
             Points::Space(points) => self.unweighted(&Euclidean::<3>, points, coordinates),
-            Points::Flat4(points) => self.unweighted(&Euclidean::<4>, points, coordinates),
-            Points::Flat5(points) => self.unweighted(&Euclidean::<5>, points, coordinates),
-            Points::Flat6(points) => self.unweighted(&Euclidean::<6>, points, coordinates),
-            Points::Flat7(points) => self.unweighted(&Euclidean::<7>, points, coordinates),
-            Points::Flat8(points) => self.unweighted(&Euclidean::<8>, points, coordinates),
+            Points::Flat(points) => self.unweighted(&Euclidean::<8>, points, coordinates),
             Points::Sphere(points) => self.unweighted(&Sphere, points, direction),
             Points::Rotations(points) => self.unweighted(&So3, points, rotation),
             Points::PlanarPoses(points) => self.weighted::<Se2>(points, planar_pose),

@@ -17,11 +17,7 @@ impl Points {
         match self {
             Self::Plane(points) => flat(points),
             Self::Space(points) => flat(points),
-            Self::Flat4(points) => flat(points),
-            Self::Flat5(points) => flat(points),
-            Self::Flat6(points) => flat(points),
-            Self::Flat7(points) => flat(points),
-            Self::Flat8(points) => flat(points),
+            Self::Flat(points) => flat(points),
             Self::Sphere(points) => Drawn { axes: ["x", "y", "z"], places: points.clone(), directions: Vec::new() },
             Self::Rotations(points) => {
                 let places = points.iter().map(UnitQuaternion::scaled_axis).collect();

@@ -48,11 +48,8 @@ pub(crate) enum Manifold {
 pub(crate) enum Points {
     Plane(Vec<Vector2<f64>>),
     Space(Vec<Vector3<f64>>),
-    Flat4(Vec<SVector<f64, 4>>),
-    Flat5(Vec<SVector<f64, 5>>),
-    Flat6(Vec<SVector<f64, 6>>),
-    Flat7(Vec<SVector<f64, 7>>),
-    Flat8(Vec<SVector<f64, 8>>),
+    /// Four to eight coordinates, the rest zeros, which change no distance: a space of its own each would be compiled for minutes.
+    Flat(Vec<SVector<f64, 8>>),
     Sphere(Vec<Vector3<f64>>),
     Rotations(Vec<UnitQuaternion<f64>>),
     PlanarPoses(Vec<Isometry2<f64>>),
@@ -155,11 +152,7 @@ fn rows_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Rows, Fail
         Manifold::Rn => match columns.len() {
             2 => Points::Plane(flat(&values)),
             3 => Points::Space(flat(&values)),
-            4 => Points::Flat4(flat(&values)),
-            5 => Points::Flat5(flat(&values)),
-            6 => Points::Flat6(flat(&values)),
-            7 => Points::Flat7(flat(&values)),
-            8 => Points::Flat8(flat(&values)),
+            4..=8 => Points::Flat(flat(&values)),
             dimension => {
                 let (file, columns) = (table.file(), columns.join(", "));
                 return Err(Failure::BadInput(format!(
@@ -180,11 +173,15 @@ fn rows_of_table(table: &Table, manifold: Option<Manifold>) -> Result<Rows, Fail
 }
 
 fn flat<const N: usize>(values: &[Vec<f64>]) -> Vec<SVector<f64, N>> {
-    values.iter().map(|row| SVector::from_column_slice(row)).collect()
+    values.iter().map(|row| padded(row)).collect()
 }
 
 pub(crate) fn coordinates<const N: usize>(row: &[f64]) -> Result<SVector<f64, N>, String> {
-    Ok(SVector::from_column_slice(row))
+    Ok(padded(row))
+}
+
+fn padded<const N: usize>(row: &[f64]) -> SVector<f64, N> {
+    SVector::from_iterator(row.iter().copied().chain(std::iter::repeat(0.0)).take(N))
 }
 
 pub(crate) fn rotation(row: &[f64]) -> Result<UnitQuaternion<f64>, String> {

@@ -148,7 +148,8 @@ fn a_robot_gets_trajectories_and_the_layout_finds_its_topics() {
             Ok(())
         })
         .unwrap();
-    assert_eq!((states, markers), (points, 4));
+    // Of the markers one removes those before; the others are poses, their three axes, curve and order.
+    assert_eq!((states, markers), (points, 7));
     // Every topic that the layout shows is there, with the type that its panel can draw.
     let layout = fs::read_to_string(format!("{BAGS}/../../config/foxglove.json")).unwrap();
     let layout: Value = serde_json::from_str(&layout).unwrap();
