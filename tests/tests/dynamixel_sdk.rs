@@ -107,6 +107,12 @@ impl Master for Robotis {
         self.value(&json!(["clear", id]))
     }
 
+    // Its `txPacket` (4.1.0) drops what its `addStuffing` returns, so that nothing is stuffed that it sends. A servo goes by length and
+    // CRC, and minds only where it takes out what was never put in.
+    fn stuffs(&self, data: &[u8]) -> bool {
+        !data.windows(4).any(|four| four == [0xFF, 0xFF, 0xFD, 0xFD])
+    }
+
     fn fast_sync_read(&mut self, ids: &[u8], address: u16, length: u16) -> Answer<Vec<Vec<u8>>> {
         self.value(&json!(["fast_sync_read", ids, address, length]))
     }

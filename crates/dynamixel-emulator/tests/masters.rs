@@ -15,6 +15,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use suite::{Answer, BAUD, Failure, Master};
 
+/// A header behind one more FF.
+const RUN: [u8; 4] = [0xFF, 0xFF, 0xFF, 0xFD];
+
 struct Robohouse(dynamixel2::Bus<Vec<u8>, Vec<u8>>);
 
 impl Robohouse {
@@ -98,8 +101,13 @@ impl Master for Robohouse {
         data(self.0.clear_revolution_counter(id))
     }
 
-    fn stuffs_after_runs(&self) -> bool {
-        false
+    // It (0.9.1) misses the header in FF FF FF FD, where the manual and the SDK see one.
+    fn stuffs(&self, data: &[u8]) -> bool {
+        !data.windows(4).any(|four| four == RUN)
+    }
+
+    fn unstuffs(&self, data: &[u8]) -> bool {
+        self.stuffs(data)
     }
 
     // Its bulk read (0.9.1) writes the entries of several servos over one another, so that only one can be read.
@@ -235,8 +243,7 @@ fn ten_thousand_packets_are_those_of_dynamixel2() {
     for _ in 0..10_000 {
         let instruction = random.choice([instruction::WRITE, instruction::SYNC_WRITE, instruction::BULK_READ]).unwrap();
         let mut packet = Packet { id: random.u8(..=252), instruction, parameters: suite::parameters(&mut random, 0) };
-        // It (0.9.1) misses the header in FF FF FF FD, where the manual and the SDK see one.
-        while let Some(i) = packet.parameters.windows(4).position(|four| four == [0xFF, 0xFF, 0xFF, 0xFD]) {
+        while let Some(i) = packet.parameters.windows(4).position(|four| four == RUN) {
             packet.parameters[i] = 0;
         }
         let fill = |buffer: &mut [u8]| buffer.copy_from_slice(&packet.parameters);
