@@ -73,6 +73,20 @@ fn low_voltage_is_told_and_switches_off_only_where_shutdown_says_so() {
 }
 
 #[test]
+fn no_supply_that_there_cannot_be_is_a_panic() {
+    for mode in [0, 1, 3, 5, 16] {
+        let settings = ServoSettings::new(1, Model::Xm540W270).with(item::OPERATING_MODE, mode);
+        let mut bench = Bench::new(vec![settings]);
+        bench.write(1, item::TORQUE_ENABLE, 1);
+        for supply_v in [0.0, -12.0, f64::NAN, f64::INFINITY] {
+            bench.0.faults_mut().supply_v = supply_v;
+            bench.0.advance(0.01);
+            assert!(bench.servo(1).torque_n_m().abs() < 1e-9, "{} N m at {supply_v} V", bench.servo(1).torque_n_m());
+        }
+    }
+}
+
+#[test]
 fn errors_that_no_model_makes_can_be_raised() {
     for (error, torque) in [(HardwareError::ElectricalShock, 0), (HardwareError::Encoder, 1)] {
         let mut bench = holding();

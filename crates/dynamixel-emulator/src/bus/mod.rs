@@ -162,10 +162,10 @@ impl Bus {
     }
 
     fn step(&mut self) {
-        for (i, servo) in self.servos.iter_mut().enumerate() {
-            let faults = &mut self.faults.servos[i];
+        let supply_v = self.faults.supply_v;
+        for (i, (servo, faults)) in self.servos.iter_mut().zip(&mut self.faults.servos).enumerate() {
             servo.pretend(faults.model_number);
-            let surroundings = Surroundings { supply_v: self.faults.supply_v, temperature_c: faults.temperature_c };
+            let surroundings = Surroundings { supply_v, temperature_c: faults.temperature_c };
             let torque = if faults.connection == Connection::Unplugged {
                 servo.stay_dark(self.plant.shaft(i));
                 0.0

@@ -30,7 +30,8 @@ impl Servo {
         }
         self.clock_s += PERIOD_S;
         self.watch_bus(PERIOD_S);
-        let voltage = self.has_torque().then(|| self.direction() * self.voltage(surroundings.supply_v));
+        let supply_v = if surroundings.supply_v.is_finite() { surroundings.supply_v.max(0.0) } else { 0.0 };
+        let voltage = self.has_torque().then(|| self.direction() * self.voltage(supply_v));
         if voltage.is_none() {
             self.pwm = 0.0;
             self.rest();
