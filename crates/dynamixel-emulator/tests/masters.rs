@@ -212,24 +212,13 @@ fn assert_sent(listener: &mut File, expected: &Packet) {
     assert_eq!(sent, expected);
 }
 
-/// Parameters in which headers and halves of headers are common.
-fn parameters(random: &mut fastrand::Rng, least: usize) -> Vec<u8> {
-    let count = random.usize(least..120);
-    let byte = |random: &mut fastrand::Rng| match random.u8(..4) {
-        0 => 0xFD,
-        1 | 2 => 0xFF,
-        _ => random.u8(..),
-    };
-    (0..count).map(|_| byte(random)).collect()
-}
-
 #[test]
 fn ten_thousand_packets_are_those_of_dynamixel2() {
     let (mut listener, path, _slave) = listened_port();
     let (mut theirs, mut random) = (Robohouse::open(&path, BAUD), fastrand::Rng::with_seed(1));
     for _ in 0..10_000 {
         let instruction = random.choice([instruction::WRITE, instruction::SYNC_WRITE, instruction::BULK_READ]).unwrap();
-        let mut packet = Packet { id: random.u8(..=252), instruction, parameters: parameters(&mut random, 0) };
+        let mut packet = Packet { id: random.u8(..=252), instruction, parameters: suite::parameters(&mut random, 0) };
         // It (0.9.1) misses the header in FF FF FF FD, where the manual and the SDK see one.
         while let Some(i) = packet.parameters.windows(4).position(|four| four == [0xFF, 0xFF, 0xFF, 0xFD]) {
             packet.parameters[i] = 0;
@@ -247,7 +236,7 @@ fn ten_thousand_packets_are_those_of_rustypot() {
     let (mut listener, path, _slave) = listened_port();
     let (mut theirs, mut random) = (Pollen::open(&path, BAUD), fastrand::Rng::with_seed(2));
     for _ in 0..10_000 {
-        let (id, address, data) = (random.u8(..=252), random.u8(..), parameters(&mut random, 1));
+        let (id, address, data) = (random.u8(..=252), random.u8(..), suite::parameters(&mut random, 1));
         theirs.handler.sync_write(theirs.port.as_mut(), &[id], address, std::slice::from_ref(&data)).unwrap();
         let head = [address, 0, data.len() as u8, 0, id];
         let parameters = [&head[..], &data].concat();

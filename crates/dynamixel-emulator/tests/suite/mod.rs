@@ -210,3 +210,14 @@ impl<M: Master> Suite<M> {
         assert_eq!((self.item(3, item::RETURN_DELAY_TIME), self.item(3, item::HOMING_OFFSET)), (250, 0));
     }
 }
+
+/// Parameters in which headers and halves of headers are common.
+pub fn parameters(random: &mut fastrand::Rng, least: usize) -> Vec<u8> {
+    let count = random.usize(least..120);
+    let byte = |random: &mut fastrand::Rng| match random.u8(..4) {
+        0 => 0xFD,
+        1 | 2 => 0xFF,
+        _ => random.u8(..),
+    };
+    (0..count).map(|_| byte(random)).collect()
+}
