@@ -2,7 +2,8 @@
 
 use crate::servo::HardwareError;
 
-/// How often packets of one direction are hurt: chances from 0 to 1, each drawn for every packet.
+/// How often packets of one direction are hurt: chances from 0 to 1, each drawn for every packet of a servo, and for whatever the host
+/// sends at once.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rates {
     /// Lost altogether.

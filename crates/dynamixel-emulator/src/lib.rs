@@ -9,7 +9,11 @@
 //! [`Bus`] takes bytes and time and gives bytes; it reads no clock and opens no port. [`EmulatedPort`] serves one behind a
 //! pseudo-terminal, whose path a master opens as it would `/dev/ttyUSB0`. What the shafts drive is a [`Plant`].
 //!
-//! The control tables lie in `tables/` as the e-manual has them. Where it is silent, the code says "Assumed".
+//! The control tables lie in `tables/` as the [e-manual](https://emanual.robotis.com/docs/en/dxl/x/xm540-w270/) has them. Where it is
+//! silent, the code says "Assumed": units of the gains, the overload rule, heat, inertia and friction of the motor, what In-Position
+//! means, how long a servo boots. Behind a servo that is missing in a sync read, all are silent; a broadcast ping is answered in the
+//! order of IDs. Torque that comes on takes the position as it is for the goal. Not emulated: Protocol 1.0, the external ports of the
+//! XM540, the sync cable of dual mode, backlash.
 //!
 //! ```
 //! use dynamixel_emulator::packet::{Packet, instruction};

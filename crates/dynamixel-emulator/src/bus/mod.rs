@@ -79,7 +79,7 @@ impl Bus {
     /// the wire, since only then do servos know what they were told.
     pub fn receive(&mut self, bytes: &[u8]) -> Vec<Transmission> {
         let (arriving, late_s) = self.faults.hurt(bytes.to_vec(), self.faults.to_servos);
-        let starts_s = self.now_s.max(self.wire_free_s) + late_s;
+        let starts_s = (self.now_s + late_s).max(self.wire_free_s);
         let ends_s = starts_s + self.wire_s(bytes.len());
         if self.parser.is_amid() && starts_s - self.heard_s > GREATEST_PAUSE_S {
             self.parser.reset();
@@ -189,8 +189,8 @@ impl Bus {
         let first = answers.next()?;
         let bytes = answers.fold(first, |a, b| self.faults.collide(&a, &b));
         let (arriving, late_s) = self.faults.hurt(bytes.clone(), self.faults.to_host);
-        let at_s = self.wire_free_s + slot.delay_s + late_s + self.wire_s(bytes.len());
-        self.wire_free_s = at_s;
-        (!arriving.is_empty()).then_some(Transmission { at_s, bytes: arriving })
+        self.wire_free_s += slot.delay_s + self.wire_s(bytes.len());
+        // What is late waits in the adapter, not on the wire.
+        (!arriving.is_empty()).then_some(Transmission { at_s: self.wire_free_s + late_s, bytes: arriving })
     }
 }

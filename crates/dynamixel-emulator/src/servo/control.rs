@@ -3,8 +3,9 @@
 //! Gains are scaled as the e-manual says (P/128, I/65536, D/16, feed-forward/4). Their units are not documented; assumed are pulses
 //! and pulses per period for positions and 0.229 rev/min for velocities in, and units of Goal PWM (or of Goal Current) out.
 
+use super::goals::{SLAVE, VELOCITY_PULSES_S};
 use super::profile::Kind;
-use super::{SLAVE, Servo, Surroundings, VELOCITY_PULSES_S};
+use super::{Servo, Surroundings};
 use crate::item;
 use crate::plant::Shaft;
 use crate::units::{CURRENT_A, FULL_PWM, PULSE_RAD, VELOCITY_RAD_S, rounded};

@@ -1,6 +1,8 @@
-//! One servo: what it remembers, how it starts, and what happens when an item is written.
+//! One servo: what it remembers and how it starts.
 
 mod control;
+mod encoder;
+mod goals;
 mod instructions;
 mod motor;
 mod profile;
@@ -8,18 +10,16 @@ mod protection;
 
 use crate::error::Error;
 use crate::item::{self, Item};
-use crate::memory::{Allowed, Memory, POSITION_MODE, WATCHDOG_ERROR};
+use crate::memory::{Memory, WATCHDOG_ERROR};
 use crate::model::Model;
 use crate::packet::Refusal;
 use crate::plant::Shaft;
 use crate::table::RAM;
-use crate::units::{
-    ACCELERATION_RAD_S2, BAUD_RATES, CENTRE, PULSE_RAD, PULSES_PER_TURN, RETURN_DELAY_S, VELOCITY_RAD_S, rounded,
-};
+use crate::units::{BAUD_RATES, CENTRE, RETURN_DELAY_S};
 pub(crate) use control::PERIOD_S;
 pub(crate) use instructions::Addressed;
 use motor::{Motor, Overload};
-use profile::{Profile, Shape};
+use profile::Profile;
 pub use protection::HardwareError;
 pub(crate) use protection::Surroundings;
 
@@ -202,130 +202,10 @@ impl Servo {
         self.publish();
     }
 
-    /// Executes a write that the rules allow.
-    fn apply(&mut self, allowed: &Allowed) {
-        let (torque, mode) = (self.has_torque(), self.item(item::OPERATING_MODE));
-        let goal = [item::GOAL_POSITION, item::GOAL_VELOCITY, item::GOAL_CURRENT, item::GOAL_PWM];
-        let writes_goal = goal.into_iter().any(|item| allowed.writes(item));
-        self.memory.write(allowed);
-        if writes_goal && self.item(item::DRIVE_MODE) & TORQUE_BY_GOAL != 0 {
-            self.memory.set(item::TORQUE_ENABLE, 1);
-        }
-        if self.is_shut_down {
-            self.memory.set(item::TORQUE_ENABLE, 0);
-        }
-        if self.item(item::OPERATING_MODE) != mode || (self.has_torque() && !torque) {
-            if self.item(item::OPERATING_MODE) == POSITION_MODE {
-                self.forget_turns();
-            }
-            self.set_goals_aside();
-            if self.item(item::OPERATING_MODE) != mode {
-                self.set_bounds();
-            }
-            // Goals of the same packet are newer than what has just replaced them.
-            let on = self.item(item::TORQUE_ENABLE);
-            self.memory.write(allowed);
-            self.memory.set(item::TORQUE_ENABLE, on);
-        }
-        if allowed.writes(item::GOAL_POSITION) && self.has_torque() {
-            let goal = f64::from(self.item(item::GOAL_POSITION));
-            self.profile = Profile::new(self.profile.desired(), goal, self.shape());
-        }
-        if allowed.writes(item::GOAL_VELOCITY) {
-            let distance = (f64::from(self.item(item::GOAL_VELOCITY)) * VELOCITY_PULSES_S - self.ramp.velocity).abs();
-            self.ramp.acceleration = match f64::from(self.item(item::PROFILE_ACCELERATION)) {
-                0.0 => f64::INFINITY,
-                time_ms if self.is_time_based() => distance / (time_ms * 1e-3),
-                acceleration => acceleration * ACCELERATION_PULSES_S2,
-            };
-        }
-        if allowed.writes(item::BUS_WATCHDOG) {
-            self.silence_s = 0.0;
-        }
-    }
-
-    /// Goals that leave the shaft where it is: torque that comes on never moves a servo.
-    fn set_goals_aside(&mut self) {
-        let present = self.present_pulses();
-        self.memory.set(item::GOAL_POSITION, present);
-        self.profile = Profile::at_rest(f64::from(present));
-        (self.ramp, self.integral) = (Ramp::default(), 0.0);
-        let mode = self.item(item::OPERATING_MODE);
-        for (of_mode, goal) in [(0, item::GOAL_CURRENT), (1, item::GOAL_VELOCITY), (16, item::GOAL_PWM)] {
-            if mode == of_mode {
-                self.memory.set(goal, 0);
-            }
-        }
-    }
-
-    /// Goals that only bound what the controller does have their limits in a new mode.
-    fn set_bounds(&mut self) {
-        for (of_mode, goal, limit) in
-            [(0, item::GOAL_CURRENT, item::CURRENT_LIMIT), (16, item::GOAL_PWM, item::PWM_LIMIT)]
-        {
-            if self.item(item::OPERATING_MODE) != of_mode {
-                self.memory.set(goal, self.item(limit));
-            }
-        }
-    }
-
-    /// Present Position in pulses: reversed, without forgotten turns, with the homing offset.
-    fn present_pulses(&self) -> i32 {
-        let homing = self.item(item::HOMING_OFFSET);
-        let is_ignored = self.item(item::OPERATING_MODE) == POSITION_MODE && homing.abs() > PULSES_PER_TURN / 4;
-        self.pulses().wrapping_sub(self.forgotten_turns).wrapping_add(if is_ignored { 0 } else { homing })
-    }
-
-    /// The encoder's pulses with all turns, in the direction of Drive Mode.
-    fn pulses(&self) -> i32 {
-        rounded(self.direction() * (self.shaft.position_rad / PULSE_RAD + f64::from(CENTRE)))
-    }
-
-    fn forget_turns(&mut self) {
-        let pulses = self.pulses();
-        self.forgotten_turns = pulses - pulses.rem_euclid(PULSES_PER_TURN);
-    }
-
-    fn direction(&self) -> f64 {
-        if self.item(item::DRIVE_MODE) & REVERSE == 0 { 1.0 } else { -1.0 }
-    }
-
-    fn is_time_based(&self) -> bool {
-        self.item(item::DRIVE_MODE) & TIME_BASED != 0
-    }
-
-    fn shape(&self) -> Shape {
-        let velocity = f64::from(self.item(item::PROFILE_VELOCITY));
-        let acceleration = f64::from(self.item(item::PROFILE_ACCELERATION));
-        match (velocity, acceleration) {
-            (0.0, _) => Shape::Step,
-            (total_ms, ms) if self.is_time_based() => {
-                Shape::Time { total_s: total_ms * 1e-3, accelerating_s: ms * 1e-3 }
-            }
-            (velocity, 0.0) => Shape::Velocity { velocity: velocity * VELOCITY_PULSES_S, acceleration: f64::INFINITY },
-            _ => Shape::Velocity {
-                velocity: velocity * VELOCITY_PULSES_S,
-                acceleration: acceleration * ACCELERATION_PULSES_S2,
-            },
-        }
-    }
-
     fn has_watchdog_error(&self) -> bool {
         self.item(item::BUS_WATCHDOG) == WATCHDOG_ERROR
     }
-}
 
-/// Bits of Drive Mode.
-const REVERSE: i32 = 1;
-const SLAVE: i32 = 2;
-const TIME_BASED: i32 = 4;
-const TORQUE_BY_GOAL: i32 = 8;
-
-/// Units of the table in pulses.
-const VELOCITY_PULSES_S: f64 = VELOCITY_RAD_S / PULSE_RAD;
-const ACCELERATION_PULSES_S2: f64 = ACCELERATION_RAD_S2 / PULSE_RAD;
-
-impl Servo {
     /// A master's write.
     pub(crate) fn write(&mut self, address: usize, data: &[u8], addressed: Addressed) -> Result<(), Refusal> {
         let allowed = self.memory.check(address, data)?;
