@@ -3,6 +3,7 @@
 
 mod suite;
 
+use dynamixel_emulator::item;
 use dynamixel_emulator::packet::{Packet, crc16, instruction};
 use nix::pty::openpty;
 use nix::sys::termios::{SetArg, cfmakeraw, tcgetattr, tcsetattr};
@@ -193,6 +194,21 @@ fn dynamixel2_passes_the_suite() {
 fn rustypot_passes_the_suite() {
     let unknown = ["action", "bulk write", "bulk read", "fast bulk read", "clear"];
     assert_eq!(suite::run(Pollen::open), unknown);
+}
+
+#[test]
+fn items_are_where_rustypot_has_them() {
+    let theirs = rustypot::servo::dynamixel::xl430::DEFINITION.registers;
+    let mut compared = 0;
+    for register in theirs {
+        let named = item::ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(register.name));
+        if let Some((name, ours)) = named {
+            assert_eq!((ours.address, ours.size), (register.addr.into(), register.size.into()), "{name}");
+            compared += 1;
+        }
+    }
+    // All but Present Load, which it calls by the name of the other models.
+    assert_eq!(compared, item::ALL.len() - 1);
 }
 
 /// A port whose far end is read by the test.

@@ -7,7 +7,6 @@ use crate::memory::{Allowed, POSITION_MODE};
 use crate::units::{ACCELERATION_RAD_S2, PULSE_RAD, VELOCITY_RAD_S};
 
 /// Bits of Drive Mode.
-
 pub(super) const SLAVE: i32 = 2;
 const TIME_BASED: i32 = 4;
 const TORQUE_BY_GOAL: i32 = 8;
