@@ -111,7 +111,7 @@ impl Servo {
     fn integrate(&mut self, output: f64, gain: f64, error: f64, bound: f64) -> f64 {
         let wanted = output + self.integral + gain * error;
         if wanted.abs() < bound || wanted * error < 0.0 {
-            self.integral = (self.integral + gain * error).clamp(-bound, bound);
+            self.integral += gain * error;
         }
         wanted.clamp(-bound, bound)
     }
