@@ -38,6 +38,8 @@ pub(crate) enum Soak {
     FuzzMcap,
     /// Random bytes, read as an SQLite file or as the metadata of a bag
     FuzzBags,
+    /// Random bytes and packets on a bus of emulated servos
+    FuzzServos,
     /// The node under ten arrays a second, while subscribers come and go: memory, lost answers, latency; the number is how many minutes
     Load,
     /// The node behind a link of 200 ms and 5 % loss each way, steady for so many seconds, then cut twice
@@ -64,6 +66,7 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: Option<u32>) -> Outcome {
         Soak::FuzzMessages => fuzz(layout, "messages", cases),
         Soak::FuzzMcap => fuzz(layout, "mcap", cases),
         Soak::FuzzBags => fuzz(layout, "bags", cases),
+        Soak::FuzzServos => fuzz(layout, "servos", cases),
     }
 }
 

@@ -4,7 +4,8 @@ use cargo_metadata::{Metadata, MetadataCommand};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-const ALL: &[&str] = &["se3-geom", "reorder", "manipulator", "pose-bag", "planner", "report", "mujoco-sim"];
+const ALL: &[&str] =
+    &["se3-geom", "reorder", "manipulator", "pose-bag", "planner", "report", "mujoco-sim", "dynamixel-emulator"];
 
 /// The arrows of the architecture, tests and build scripts included. A new crate needs a row.
 const MAY_DEPEND_ON: &[(&str, &[&str])] = &[
@@ -16,6 +17,7 @@ const MAY_DEPEND_ON: &[(&str, &[&str])] = &[
     ("report", &["planner"]),
     ("mujoco-sim", &["planner"]),
     ("mujoco-arm", &["planner", "mujoco-sim"]),
+    ("dynamixel-emulator", &[]),
     ("reorder-node", &["planner"]),
     ("reorder-cli", &["planner", "pose-bag", "report"]),
     ("xtask", &[]),
