@@ -2,7 +2,8 @@
 //!
 //! [`plan`] is the pipeline as one pure function: poses, robot, start state and configuration in; ordered poses, spline, joint
 //! trajectory and audit out, or a named [`Refusal`]. [`Session`] is the state machine around it that a node or a test drives:
-//! inputs in, outputs out, no clock, file, thread or ROS inside, so that a transcript repeats bit for bit.
+//! inputs in, outputs out, no clock, file, thread or ROS inside, so that a transcript repeats bit for bit. What executes the result is an
+//! [`Arm`], simulated or real.
 //!
 //! ```
 //! use planner::{Config, Request, manipulator::Robot, plan, pose_bag::read_poses};
@@ -19,7 +20,9 @@
 //! # Ok(()) }
 //! ```
 
+mod arm;
 mod config;
+mod controller;
 mod exchange;
 mod joints;
 mod markers;
@@ -30,7 +33,9 @@ mod refusal;
 mod report;
 mod session;
 
+pub use arm::{Arm, ArmLost, Present};
 pub use config::{Config, OnRefusal};
+pub use controller::{Controller, Refused, START_TOLERANCE};
 pub use exchange::{Counters, Input, Job, Outcome, Output, RawPose};
 pub use manipulator;
 pub use markers::{Drawn, markers};

@@ -57,7 +57,7 @@ fn build(layout: &Layout) -> Outcome<Binaries> {
 }
 
 /// The `*.truth.json` beside every recorded bag, by name.
-fn recordings(layout: &Layout) -> Outcome<Vec<PathBuf>> {
+pub(crate) fn recordings(layout: &Layout) -> Outcome<Vec<PathBuf>> {
     let folder = layout.root().join("tests/data");
     let entries = fs::read_dir(&folder).map_err(Failure::io("read", &folder))?;
     let mut truths: Vec<_> = entries
@@ -262,11 +262,11 @@ fn text(value: &Value, key: &str, file: &Path) -> Outcome<String> {
     value[key].as_str().map(str::to_owned).ok_or_else(missing)
 }
 
-fn read_json(path: &Path) -> Outcome<Value> {
+pub(crate) fn read_json(path: &Path) -> Outcome<Value> {
     let text = fs::read_to_string(path).map_err(Failure::io("read", path))?;
     serde_json::from_str(&text).map_err(|error| Failure::step("the demo", format!("{}: {error}", path.display())))
 }
 
-fn write_json(path: &Path, value: &Value) -> Outcome {
+pub(crate) fn write_json(path: &Path, value: &Value) -> Outcome {
     fs::write(path, format!("{value:#}\n")).map_err(Failure::io("write", path))
 }

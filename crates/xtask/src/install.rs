@@ -11,8 +11,8 @@ use crate::setup;
 
 /// The name under which `ros2 run` and launch files know it, and the cargo packages of its executables.
 pub(crate) const PACKAGE: &str = "reorder_node";
-pub(crate) const BUILT: [&str; 2] = ["reorder-node", "mujoco-arm"];
-const EXECUTABLES: [&str; 2] = ["reorder_node", "mujoco_arm"];
+pub(crate) const BUILT: [&str; 3] = ["reorder-node", "mujoco-arm", "dynamixel-arm"];
+const EXECUTABLES: [&str; 3] = ["reorder_node", "mujoco_arm", "dynamixel_arm"];
 /// What is copied to `share/reorder_node`.
 const SHARED: [&str; 2] = ["launch", "config"];
 

@@ -5,6 +5,7 @@ mod browser;
 mod demo;
 mod env;
 mod failure;
+mod hil;
 mod install;
 mod interfaces;
 mod launch;
@@ -29,10 +30,12 @@ enum Chore {
     Setup,
     /// Set up, build, and run the main job for real: recorded poses, ROS 2, the node, MuJoCo
     Demo,
+    /// Set up, build, and draw recorded shapes with Dynamixel servos that do not exist: ROBOTIS's SDK, an emulated bus, MuJoCo
+    Hil,
     /// Run a long test at full length and print its figures
     Soak {
         name: soak::Soak,
-        /// How many random cases (else 1000), seconds (fuzz-*, else 1000; link, else 60), or minutes (load, else 10)
+        /// How many random cases (else 1000), seconds (fuzz-*, else 1000; link, else 60), or minutes (load and hil, else 10)
         amount: Option<u32>,
     },
     /// Shuffle recordings whose order is known, have `reorder order` put them right, and print how many it did
@@ -72,6 +75,7 @@ fn main() -> ExitCode {
     let outcome = match Chore::parse() {
         Chore::Setup => setup::run_for_tests(&layout),
         Chore::Demo => demo::run(&layout),
+        Chore::Hil => hil::run(&layout),
         Chore::Soak { name, amount } => soak::run(&layout, name, amount),
         Chore::Score { folder, max_n, seed } => score::run(&layout, folder.as_deref(), max_n, seed),
         Chore::Bench { area } => bench::run(&layout, &area),

@@ -8,6 +8,7 @@ use clap::ValueEnum;
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
+use crate::hil;
 
 /// What can be run at length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -40,8 +41,12 @@ pub(crate) enum Soak {
     FuzzBags,
     /// Random bytes and packets on a bus of emulated servos
     FuzzServos,
+    /// Random bytes as answers of servos, to the Dynamixel driver: the number is how many seconds
+    FuzzDriver,
     /// The node under ten arrays a second, while subscribers come and go: memory, lost answers, latency; the number is how many minutes
     Load,
+    /// An emulated ViperX on a bus that damages one packet in a hundred: faults, jumps, tracking; the number is how many minutes
+    Hil,
     /// The node behind a link of 200 ms and 5 % loss each way, steady for so many seconds, then cut twice
     Link,
 }
@@ -52,6 +57,7 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: Option<u32>) -> Outcome {
     let cases = amount.unwrap_or(CASES);
     match name {
         Soak::Load => ros::load(layout, amount.unwrap_or(10)),
+        Soak::Hil => hil::soak(layout, amount.unwrap_or(10)),
         Soak::Link => ros::link(layout, amount.unwrap_or(60)),
         Soak::Plans => run_test(layout, "planner", "random_plans", cases),
         Soak::Handovers => run_test(layout, "planner", "handover", cases),
@@ -65,6 +71,7 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: Option<u32>) -> Outcome {
         Soak::FuzzTracks => fuzz(layout, "tracks", cases),
         Soak::FuzzMessages => fuzz(layout, "messages", cases),
         Soak::FuzzMcap => fuzz(layout, "mcap", cases),
+        Soak::FuzzDriver => run_test(layout, "dynamixel-hil", "garbage", cases),
         Soak::FuzzBags => fuzz(layout, "bags", cases),
         Soak::FuzzServos => fuzz(layout, "servos", cases),
     }

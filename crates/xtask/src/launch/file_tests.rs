@@ -101,7 +101,7 @@ fn the_shipped_launch_files_are_understood() {
         for process in found {
             if let Program::Node { package, executable } = process.program {
                 assert_eq!(package, "reorder_node");
-                assert!(["reorder_node", "mujoco_arm"].contains(&executable.as_str()), "{executable}");
+                assert!(["reorder_node", "mujoco_arm", "dynamixel_arm"].contains(&executable.as_str()), "{executable}");
             }
             // Nothing listens beyond this machine unless it is asked to.
             let loopback = ("ROS_AUTOMATIC_DISCOVERY_RANGE".to_owned(), "LOCALHOST".to_owned());

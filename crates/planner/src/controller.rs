@@ -1,50 +1,74 @@
-//! The controller of the arm: which trajectory it plays, and where the joints are to be at every time.
+//! The controller of an arm: which trajectory it plays, and where the joints are to be at every time.
 //!
 //! As `joint_trajectory_controller` of ros2_control does, it connects points by quintics, starts at the header's stamp (at once where that
 //! is zero), and drops what it plays when something newer comes. It is stricter: a trajectory that would begin with a jump is refused.
 
-use mujoco_sim::Reference;
-use planner::manipulator::{JointPoint, JointTrajectory, Robot, TimingOptions, slow_to_stop};
+use manipulator::nalgebra::DVector;
+use manipulator::{JointPoint, JointTrajectory, Robot, TimingOptions, slow_to_stop};
+
+use crate::arm::Present;
 
 /// A joint may be this far from where a trajectory has it when it is taken up, in rad (m for slides): the noise of joint states.
-pub(crate) const START_TOLERANCE: f64 = 0.01;
+pub const START_TOLERANCE: f64 = 0.01;
 
-/// Plays trajectories.
-pub(crate) struct Controller {
+/// Plays trajectories on an arm's clock, in s. Positions are in rad (m for slides), in the robot's joint order.
+#[derive(Debug, Clone)]
+pub struct Controller {
     robot: Robot,
     playing: JointTrajectory,
     /// When the time of what is played is 0, in s of the arm's clock.
     since_s: f64,
+    number: u64,
 }
 
 /// Why a trajectory is not taken up, by the result codes of FollowJointTrajectory.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(crate) enum Refused {
+pub enum Refused {
+    /// It is malformed, or would begin with a jump.
     #[error("{0}")]
     Goal(String),
+    /// It is for other joints.
     #[error("{0}")]
     Joints(String),
+    /// It is over.
     #[error("the trajectory ended {ago_s:.3} s ago by its header's stamp")]
-    Old { ago_s: f64 },
+    Old {
+        /// How long, in s.
+        ago_s: f64,
+    },
+    /// The arm cannot move.
+    #[error("the arm stands still after a fault: {0}")]
+    Faulty(String),
 }
 
 impl Controller {
     /// At rest at a configuration, in the robot's joint order.
-    pub(crate) fn at_rest(robot: Robot, positions: &[f64]) -> Self {
-        let zeros = vec![0.0; positions.len()];
-        let point =
-            JointPoint { time_s: 0.0, positions: positions.to_vec(), velocities: zeros.clone(), accelerations: zeros };
-        let playing = JointTrajectory { joint_names: robot.chain.joint_names().to_vec(), points: vec![point] };
-        Self { robot, playing, since_s: 0.0 }
+    pub fn at_rest(robot: Robot, positions: &[f64]) -> Self {
+        let playing = rest(robot.chain.joint_names(), positions);
+        Self { robot, playing, since_s: 0.0, number: 0 }
     }
 
-    /// Takes a trajectory up that begins at `starts_at_s` of the arm's clock, in the past or the future, or at once.
-    pub(crate) fn play(
-        &mut self,
-        now_s: f64,
-        starts_at_s: Option<f64>,
-        trajectory: JointTrajectory,
-    ) -> Result<(), Refused> {
+    /// The arm that it is for.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// What is played; its time 0 may be past.
+    pub fn playing(&self) -> &JointTrajectory {
+        &self.playing
+    }
+
+    /// Drops what is played, and rests at a configuration, wherever that is: only for joints that stand there.
+    pub fn rest_at(&mut self, now_s: f64, positions: &[f64]) {
+        self.playing = rest(self.robot.chain.joint_names(), positions);
+        self.since_s = now_s;
+    }
+
+    /// Takes a trajectory up that begins at `starts_at_s` of the arm's clock, in the past or the future, or at once. Returns its number.
+    ///
+    /// # Errors
+    /// Where it is no trajectory for this arm, is over, or would begin with a jump.
+    pub fn play(&mut self, now_s: f64, starts_at_s: Option<f64>, trajectory: JointTrajectory) -> Result<u64, Refused> {
         let mut next = self.in_own_order(trajectory)?;
         let since_s = starts_at_s.unwrap_or(now_s);
         let ends_at_s = since_s + next.duration_s();
@@ -68,11 +92,12 @@ impl Controller {
         } else {
             (self.playing, self.since_s) = (next, since_s);
         }
-        Ok(())
+        self.number += 1;
+        Ok(self.number)
     }
 
     /// Stops on the path, as soon as the limits allow.
-    pub(crate) fn stop(&mut self, now_s: f64) {
+    pub fn stop(&mut self, now_s: f64) {
         let at_s = now_s - self.since_s;
         // Where nothing better is found, the rest of what is played is a stop too.
         if let Ok(stop) = slow_to_stop(&self.robot, &self.playing, at_s, &TimingOptions::default()) {
@@ -81,19 +106,32 @@ impl Controller {
     }
 
     /// When the arm will rest, in s of its clock.
-    pub(crate) fn ends_at_s(&self) -> f64 {
+    pub fn ends_at_s(&self) -> f64 {
         self.since_s + self.playing.duration_s()
     }
 
-    /// Where the joints are to be.
-    pub(crate) fn reference(&self, now_s: f64, timestep_s: f64) -> Reference {
+    /// Where the joints are to be: position, velocity (per s), acceleration (per s²).
+    pub fn at(&self, now_s: f64) -> [DVector<f64>; 3] {
         let [position, velocity, acceleration, _] = self.playing.at(now_s - self.since_s);
-        let [_, mid_velocity, ..] = self.playing.at(now_s + 0.5 * timestep_s - self.since_s);
-        Reference { position, velocity, acceleration, mid_velocity }
+        [position, velocity, acceleration]
+    }
+
+    /// What there is to say of an arm whose joints are so.
+    pub fn present(&self, now_s: f64, position: Vec<f64>, velocity: Vec<f64>) -> Present {
+        Present {
+            now_s,
+            number: self.number,
+            position,
+            velocity,
+            desired: self.at(now_s).map(|values| values.as_slice().to_vec()),
+            goal: self.goal().to_vec(),
+            ends_at_s: self.ends_at_s(),
+            fault: None,
+        }
     }
 
     /// The last point: where everything ends.
-    pub(crate) fn goal(&self) -> &[f64] {
+    pub fn goal(&self) -> &[f64] {
         self.playing.points.last().map_or(&[], |point| &point.positions)
     }
 
@@ -134,6 +172,14 @@ impl Controller {
         }
         Ok(JointTrajectory { joint_names: own.to_vec(), points })
     }
+}
+
+/// The trajectory of one point.
+fn rest(joint_names: &[String], positions: &[f64]) -> JointTrajectory {
+    let zeros = vec![0.0; positions.len()];
+    let point =
+        JointPoint { time_s: 0.0, positions: positions.to_vec(), velocities: zeros.clone(), accelerations: zeros };
+    JointTrajectory { joint_names: joint_names.to_vec(), points: vec![point] }
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
-//! The thread in which simulated time passes.
+//! The thread in which the arm's time passes.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant, SystemTime};
 
 use r2r::builtin_interfaces::msg::Time;
@@ -9,13 +8,10 @@ use r2r::rosgraph_msgs::msg::Clock as ClockMessage;
 use r2r::sensor_msgs::msg::JointState;
 use r2r::{Node, Publisher, QosProfile};
 
-use crate::ArmError;
+use crate::error::NodeError;
 use crate::message::{joint_state, stamp_ns, time};
-use crate::settings::Settings;
-use crate::world::{World, lock};
+use crate::{Pacing, SharedArm, lock};
 
-/// Behind by more than this, the arm goes on more slowly, rather than to make up for it in a rush.
-const MOST_BEHIND: Duration = Duration::from_millis(100);
 /// On `/clock` time begins at 1 s: a stamp of zero means that there is none.
 const CLOCK_BEGINS_NS: i64 = 1_000_000_000;
 
@@ -43,35 +39,39 @@ impl Clock {
     }
 }
 
-pub(crate) struct Simulation {
-    world: Arc<Mutex<World>>,
+/// Lets the arm's time pass, and tells where the joints are.
+pub(crate) struct Pace {
+    arm: SharedArm,
     clock: Clock,
     states: Publisher<JointState>,
     clock_messages: Option<Publisher<ClockMessage>>,
+    logger: String,
     speed: f64,
-    /// Simulated time between two joint states, in s.
+    /// Time between two joint states, in s of the arm's clock.
     period_s: f64,
+    /// Behind by more than this, the arm goes on later, rather than to make up for it in a rush.
+    most_behind: Duration,
     names: Vec<String>,
 }
 
-impl Simulation {
-    pub(crate) fn create(
-        node: &mut Node,
-        settings: &Settings,
-        clock: Clock,
-        world: Arc<Mutex<World>>,
-    ) -> Result<Self, ArmError> {
+impl Pace {
+    pub(crate) fn create(node: &mut Node, pacing: &Pacing, clock: Clock, arm: SharedArm) -> Result<Self, NodeError> {
         let states = node.create_publisher("joint_states", QosProfile::default().reliable().keep_last(10))?;
         let clock_qos = QosProfile::default().best_effort().keep_last(1);
-        let clock_messages = settings.clock.then(|| node.create_publisher("/clock", clock_qos)).transpose()?;
-        let names = lock(&world).joint_names.clone();
-        let (speed, period_s) = (settings.speed, 1.0 / settings.rate_hz);
-        Ok(Self { world, clock, states, clock_messages, speed, period_s, names })
+        let clock_messages = pacing.clock.then(|| node.create_publisher("/clock", clock_qos)).transpose()?;
+        let (names, most_behind) = {
+            let arm = lock(&arm);
+            (arm.joint_names().to_vec(), Duration::from_secs_f64(arm.most_behind_s()))
+        };
+        let (speed, period_s) = (pacing.speed, 1.0 / pacing.rate_hz);
+        let logger = node.logger().to_owned();
+        Ok(Self { arm, clock, states, clock_messages, logger, speed, period_s, most_behind, names })
     }
 
     /// Lets time pass until `stop` says so.
-    pub(crate) fn run(self, stop: &AtomicBool) -> Result<(), ArmError> {
+    pub(crate) fn run(self, stop: &AtomicBool) -> Result<(), NodeError> {
         let mut began = Instant::now();
+        let mut fault = None;
         for tick in 0_u64.. {
             if stop.load(Ordering::Relaxed) {
                 break;
@@ -81,14 +81,21 @@ impl Simulation {
             let now = Instant::now();
             // A pace, not a wait for an event.
             std::thread::sleep(due.saturating_duration_since(now));
-            if now > due + MOST_BEHIND {
+            if now > due + self.most_behind {
                 began += now - due;
             }
             let present = {
-                let mut world = lock(&self.world);
-                world.run(until_s)?;
-                world.present()
+                let mut arm = lock(&self.arm);
+                arm.run(until_s)?;
+                arm.present()
             };
+            if present.fault != fault {
+                match &present.fault {
+                    Some(why) => r2r::log_error!(&self.logger, "the arm has stopped: {why}"),
+                    None => r2r::log_info!(&self.logger, "the arm goes on"),
+                }
+                fault = present.fault;
+            }
             let stamp_ns = self.clock.stamp_ns(present.now_s);
             if let Some(clock) = &self.clock_messages {
                 clock.publish(&ClockMessage { clock: time(stamp_ns) })?;

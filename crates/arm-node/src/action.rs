@@ -1,17 +1,16 @@
 //! Goals of FollowJointTrajectory: taken up or rejected, watched, cancelled with a smooth stop.
 
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use futures::StreamExt;
+use planner::{Present, Refused};
 use r2r::control_msgs::action::FollowJointTrajectory as Follow;
 use r2r::control_msgs::msg::JointTolerance;
 use r2r::{ActionServerGoal, ActionServerGoalRequest};
 
-use crate::controller::Refused;
 use crate::message::{header, point, trajectory};
-use crate::simulation::Clock;
-use crate::world::{Present, World, lock};
+use crate::pace::Clock;
+use crate::{SharedArm, lock};
 
 /// How often a goal is looked at, and feedback given.
 const PERIOD: Duration = Duration::from_millis(20);
@@ -21,15 +20,10 @@ const GOAL_TOLERANCE: f64 = 0.01;
 const GOAL_TIME_S: f64 = 1.0;
 
 /// Plays what is asked for, or rejects it, and sees to its end on a task of its own.
-pub(crate) fn serve(
-    request: ActionServerGoalRequest<Follow::Action>,
-    world: Arc<Mutex<World>>,
-    clock: Clock,
-    logger: &str,
-) {
+pub(crate) fn serve(request: ActionServerGoalRequest<Follow::Action>, arm: SharedArm, clock: Clock, logger: &str) {
     let wanted = &request.goal.trajectory;
     let starts_at_s = clock.seconds(&wanted.header.stamp);
-    let played = lock(&world).play(starts_at_s, trajectory(wanted));
+    let played = lock(&arm).play(starts_at_s, trajectory(wanted));
     let logger = logger.to_owned();
     match played {
         Err(why) => {
@@ -42,7 +36,7 @@ pub(crate) fn serve(
             Err(error) => r2r::log_error!(&logger, "accepting failed: {error}"),
             Ok((goal, cancels)) => {
                 tokio::spawn(async move {
-                    if let Err(error) = watch(goal, cancels, number, world, clock).await {
+                    if let Err(error) = watch(goal, cancels, number, arm, clock).await {
                         r2r::log_error!(&logger, "a goal is lost: {error}");
                     }
                 });
@@ -62,7 +56,7 @@ async fn watch(
     mut goal: ActionServerGoal<Follow::Action>,
     mut cancels: impl futures::Stream<Item = r2r::ActionServerCancelRequest> + Unpin,
     number: u64,
-    world: Arc<Mutex<World>>,
+    arm: SharedArm,
     clock: Clock,
 ) -> r2r::Result<()> {
     let mut pace = tokio::time::interval(PERIOD);
@@ -71,22 +65,26 @@ async fn watch(
         tokio::select! {
             Some(cancel) = cancels.next() => {
                 cancel.accept();
-                lock(&world).stop();
+                lock(&arm).stop();
                 stopping.get_or_insert(End::Canceled);
             }
             _ = pace.tick() => {
-                let present = lock(&world).present();
-                goal.publish_feedback(feedback(&goal.goal.trajectory.joint_names, &present, &world, clock))?;
+                let present = lock(&arm).present();
+                let names = lock(&arm).joint_names().to_vec();
+                goal.publish_feedback(feedback(&goal.goal.trajectory.joint_names, &names, &present, clock))?;
                 if present.number != number {
                     break End::Aborted(Follow::Result::SUCCESSFUL as i32, "a newer trajectory took over".into());
                 }
                 let rests = present.now_s >= present.ends_at_s;
+                if let Some(why) = &present.fault {
+                    // The arm stops by itself.
+                    stopping = Some(End::Aborted(Follow::Result::PATH_TOLERANCE_VIOLATED as i32, why.clone()));
+                }
                 if stopping.is_some() && rests {
                     break stopping.unwrap_or(End::Canceled);
                 }
-                let names = lock(&world).joint_names.clone();
                 if stopping.is_none() && let Some(why) = off(&present.desired[0], &present.position, &names, &goal.goal.path_tolerance, None) {
-                    lock(&world).stop();
+                    lock(&arm).stop();
                     stopping = Some(End::Aborted(Follow::Result::PATH_TOLERANCE_VIOLATED as i32, why));
                 } else if rests {
                     match off(&present.goal, &present.position, &names, &goal.goal.goal_tolerance, Some(GOAL_TOLERANCE)) {
@@ -126,8 +124,7 @@ fn off(
 }
 
 /// In the joint order of the goal.
-fn feedback(names: &[String], present: &Present, world: &Mutex<World>, clock: Clock) -> Follow::Feedback {
-    let own = lock(world).joint_names.clone();
+fn feedback(names: &[String], own: &[String], present: &Present, clock: Clock) -> Follow::Feedback {
     let places: Vec<usize> = names.iter().filter_map(|name| own.iter().position(|other| other == name)).collect();
     let pick = |values: &[f64]| places.iter().map(|&place| values[place]).collect::<Vec<_>>();
     let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>();
@@ -146,7 +143,7 @@ fn feedback(names: &[String], present: &Present, world: &Mutex<World>, clock: Cl
 /// The result code that the action has for it: a rejection cannot carry one, so the log does.
 fn code(why: &Refused) -> i64 {
     match why {
-        Refused::Goal(_) => Follow::Result::INVALID_GOAL as i64,
+        Refused::Goal(_) | Refused::Faulty(_) => Follow::Result::INVALID_GOAL as i64,
         Refused::Joints(_) => Follow::Result::INVALID_JOINTS as i64,
         Refused::Old { .. } => Follow::Result::OLD_HEADER_TIMESTAMP as i64,
     }
