@@ -6,8 +6,7 @@ use crate::error::Error;
 use crate::faults::{Connection, Faults};
 use crate::packet::{MAX_ID, Parser};
 use crate::plant::Plant;
-use crate::servo::PERIOD_S;
-use crate::servo::{Servo, ServoSettings, Surroundings};
+use crate::servo::{PERIOD_S, Servo, ServoSettings, Surroundings};
 use dispatch::Slot;
 
 /// Start bit, eight data bits, stop bit.
