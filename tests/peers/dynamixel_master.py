@@ -3,7 +3,7 @@
     dynamixel_master.py PORT BAUD
 
 An answer is {"value": …}, {"refused": number of the error} or {"failed": result code of the SDK}. Bytes are lists of integers.
-`encode` needs no port: it gives a packet's bytes.
+`encode` needs no port: it gives the bytes of packets.
 """
 
 import json
@@ -110,14 +110,18 @@ def bulk_write(port, writes):
     return answer(group.txPacket(), 0)
 
 
-def encode(_port, servo, instruction, parameters):
-    """Stuffed and with its CRC. `txPacket` of 4.1.0 drops what `addStuffing` returns, hence not by it."""
+def encode(_port, packets):
+    """Packets stuffed and with their CRC. `txPacket` of 4.1.0 drops what `addStuffing` returns, hence not by it."""
+    return answer(sdk.COMM_SUCCESS, 0, [encoded(*packet) for packet in packets])
+
+
+def encoded(servo, instruction, parameters):
     length = len(parameters) + 3
     head = [0xFF, 0xFF, 0xFD, 0, servo, length & 0xFF, length >> 8, instruction]
     packet = handler.addStuffing(head + parameters + [0, 0])
     crc = handler.updateCRC(0, packet, len(packet) - 2)
     packet[-2:] = [crc & 0xFF, crc >> 8]
-    return answer(sdk.COMM_SUCCESS, 0, bytes(packet).hex())
+    return bytes(packet).hex()
 
 
 def main():

@@ -138,15 +138,21 @@ fn the_sdk_passes_the_suite() {
 #[test]
 fn ten_thousand_packets_are_those_of_the_sdk() {
     let (mut sdk, mut random) = (Robotis::start(&[]), fastrand::Rng::with_seed(3));
-    for _ in 0..10_000 {
-        let instructions = [instruction::WRITE, instruction::SYNC_WRITE, instruction::BULK_READ, instruction::CLEAR];
-        let packet = Packet {
-            id: random.u8(..=252),
-            instruction: random.choice(instructions).unwrap(),
-            parameters: suite::parameters(&mut random, 0),
-        };
-        let theirs = sdk.call(&json!(["encode", packet.id, packet.instruction, packet.parameters])).unwrap();
-        let ours: String = packet.encode().iter().map(|byte| format!("{byte:02x}")).collect();
-        assert_eq!(theirs, ours, "{packet:?}");
+    let instructions = [instruction::WRITE, instruction::SYNC_WRITE, instruction::BULK_READ, instruction::CLEAR];
+    for _ in 0..20 {
+        let packets: Vec<_> = (0..500)
+            .map(|_| Packet {
+                id: random.u8(..=252),
+                instruction: random.choice(instructions).unwrap(),
+                parameters: suite::parameters(&mut random, 0),
+            })
+            .collect();
+        let asked: Vec<_> = packets.iter().map(|p| json!([p.id, p.instruction, p.parameters])).collect();
+        let theirs: Vec<String> = sdk.value(&json!(["encode", asked])).unwrap().unwrap();
+        assert_eq!(theirs.len(), packets.len());
+        for (packet, theirs) in packets.iter().zip(theirs) {
+            let ours: String = packet.encode().iter().map(|byte| format!("{byte:02x}")).collect();
+            assert_eq!(theirs, ours, "{packet:?}");
+        }
     }
 }
