@@ -96,11 +96,14 @@ impl Controller {
         Ok(self.number)
     }
 
-    /// Stops on the path, as soon as the limits allow.
+    /// Stops on the path, as soon as the limits allow. What breaks limits is braked all the same, as hard as it accelerates itself.
     pub fn stop(&mut self, now_s: f64) {
         let at_s = now_s - self.since_s;
-        // Where nothing better is found, the rest of what is played is a stop too.
-        if let Ok(stop) = slow_to_stop(&self.robot, &self.playing, at_s, &TimingOptions::default()) {
+        let slowed = slow_to_stop(&self.robot, &self.playing, at_s, &TimingOptions::default());
+        if let Ok(stop) = slowed {
+            (self.playing, self.since_s) = (stop, now_s);
+        } else if at_s > 0.0 && at_s < self.playing.duration_s() {
+            let stop = braked(&self.playing, at_s, self.robot.limits.acceleration.as_slice());
             (self.playing, self.since_s) = (stop, now_s);
         }
     }
@@ -159,6 +162,10 @@ impl Controller {
             if point.time_s < 0.0 || before.is_some_and(|before| point.time_s <= before) {
                 return Err(Refused::Goal(format!("the time of point {index} does not come after the one before")));
             }
+            let moves = point.velocities.iter().any(|velocity| velocity.abs() > START_TOLERANCE);
+            if points.is_empty() && point.time_s > 0.0 && moves {
+                return Err(Refused::Goal("nothing leads to the speed of the first point, whose time is not 0".into()));
+            }
             points.push(JointPoint {
                 time_s: point.time_s,
                 positions: pick("position", &point.positions)?,
@@ -172,6 +179,50 @@ impl Controller {
         }
         Ok(JointTrajectory { joint_names: own.to_vec(), points })
     }
+}
+
+/// Points of a braked trajectory.
+const BRAKING_POINTS: usize = 50;
+
+/// A trajectory from its time `at_s` on, whose clock is slowed to a standstill: with u = t/T the rate of time is 1 − (10u³ − 15u⁴ + 6u⁵), which
+/// begins and ends without a jump of acceleration. It falls by at most 15/8 a T, and T is such that this decelerates no joint by more than
+/// its limit, or than the trajectory itself accelerates it.
+fn braked(running: &JointTrajectory, at_s: f64, accelerations: &[f64]) -> JointTrajectory {
+    let left_s = running.duration_s() - at_s;
+    let hardest = running.points.iter().fold(accelerations.to_vec(), |most, point| {
+        most.iter().zip(&point.accelerations).map(|(most, a)| most.max(a.abs())).collect()
+    });
+    let taken_s = |fastest: &[f64]| {
+        fastest.iter().zip(&hardest).fold(0.0, |most: f64, (v, hardest)| most.max(1.875 * v.abs() / hardest))
+    };
+    // The joints may be faster later on the way than they are now.
+    let fastest_within = |span_s: f64| {
+        let samples = (0..=BRAKING_POINTS).map(|k| at_s + span_s * k as f64 / BRAKING_POINTS as f64);
+        let zeros = vec![0.0_f64; accelerations.len()];
+        samples.fold(zeros, |most, time_s| {
+            let [_, velocity, ..] = running.at(time_s);
+            most.iter().zip(velocity.iter()).map(|(most, v)| most.max(v.abs())).collect()
+        })
+    };
+    let [_, now, ..] = running.at(at_s);
+    let first_s = taken_s(now.as_slice());
+    // Half of T passes on the running clock.
+    let span_s = taken_s(&fastest_within((0.5 * first_s).min(left_s))).max(1e-3);
+    let points = (0..=BRAKING_POINTS).map(|k| {
+        let u = k as f64 / BRAKING_POINTS as f64;
+        let passed_s = span_s * (u - (2.5 * u.powi(4) - 3.0 * u.powi(5) + u.powi(6)));
+        let rate = 1.0 - (10.0 * u.powi(3) - 15.0 * u.powi(4) + 6.0 * u.powi(5));
+        let slowing = -30.0 * (u * (1.0 - u)).powi(2) / span_s;
+        let [position, velocity, acceleration, _] = running.at(at_s + passed_s);
+        let curved = &acceleration * (rate * rate) + &velocity * slowing;
+        JointPoint {
+            time_s: span_s * u,
+            positions: position.as_slice().to_vec(),
+            velocities: (velocity * rate).as_slice().to_vec(),
+            accelerations: curved.as_slice().to_vec(),
+        }
+    });
+    JointTrajectory { joint_names: running.joint_names.clone(), points: points.collect() }
 }
 
 /// The trajectory of one point.

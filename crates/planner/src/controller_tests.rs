@@ -67,6 +67,41 @@ fn a_stop_is_smooth_and_short_of_the_goal() {
     assert!(position < 3.15 * STEP_S && velocity < 5.1 * STEP_S, "{position} {velocity}");
 }
 
+/// From elsewhere come trajectories that break limits; they too have to stop when they are told.
+#[test]
+fn what_breaks_limits_stops_as_well() {
+    let mut controller = controller();
+    let mut hasty = swing(HOME[0], HOME[0] + 1.0);
+    // Three times as fast: nine times the acceleration, 45 rad/s².
+    for point in &mut hasty.points {
+        point.time_s /= 3.0;
+        point.velocities.iter_mut().for_each(|v| *v *= 3.0);
+        point.accelerations.iter_mut().for_each(|a| *a *= 9.0);
+    }
+    let middle_s = 0.5 * hasty.duration_s();
+    controller.play(0.0, None, hasty).unwrap();
+    let before = controller.at(middle_s);
+    controller.stop(middle_s);
+    let after = controller.at(middle_s);
+    assert!((after[0][0] - before[0][0]).abs() < 1e-12 && (after[1][0] - before[1][0]).abs() < 1e-12);
+    let ends_at_s = controller.ends_at_s();
+    assert!(controller.at(ends_at_s)[1].amax() < 1e-12);
+    let goal = controller.goal()[0];
+    assert!(goal < HOME[0] + 0.95, "{goal}");
+    let [position, velocity] = roughness(&controller, middle_s, ends_at_s);
+    // No faster than it was; what the trajectory decelerates itself and what its slowing clock adds are at most 45 rad/s² each.
+    assert!(position <= before[1][0].abs() * STEP_S * 1.001 && velocity < 90.0 * STEP_S, "{position} {velocity}");
+}
+
+#[test]
+fn a_trajectory_begins_at_rest_or_at_once() {
+    let mut late = swing(HOME[0], HOME[0] + 1.0);
+    // As if its first half was cut off, and its times not set back.
+    late.points.drain(..late.points.len() / 2);
+    let why = controller().play(0.0, None, late).unwrap_err().to_string();
+    assert_eq!(why, "nothing leads to the speed of the first point, whose time is not 0");
+}
+
 /// On the way a trajectory takes over only where it has the arm's state.
 #[test]
 fn jumps_are_refused_and_change_nothing() {
