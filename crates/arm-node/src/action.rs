@@ -71,7 +71,7 @@ async fn watch(
             _ = pace.tick() => {
                 let present = lock(&arm).present();
                 let names = lock(&arm).joint_names().to_vec();
-                goal.publish_feedback(feedback(&goal.goal.trajectory.joint_names, &names, &present, clock))?;
+                goal.publish_feedback(feedback(&goal.goal.trajectory.joint_names, &names, &present, &clock))?;
                 if present.number != number {
                     break End::Aborted(Follow::Result::SUCCESSFUL as i32, "a newer trajectory took over".into());
                 }
@@ -124,7 +124,7 @@ fn off(
 }
 
 /// In the joint order of the goal.
-fn feedback(names: &[String], own: &[String], present: &Present, clock: Clock) -> Follow::Feedback {
+fn feedback(names: &[String], own: &[String], present: &Present, clock: &Clock) -> Follow::Feedback {
     let places: Vec<usize> = names.iter().filter_map(|name| own.iter().position(|other| other == name)).collect();
     let pick = |values: &[f64]| places.iter().map(|&place| values[place]).collect::<Vec<_>>();
     let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>();

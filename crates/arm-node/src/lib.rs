@@ -37,6 +37,9 @@ pub use crate::parameters::{Parameters, number};
 
 /// Data wakes the spinning thread at once; this only bounds how long a shutdown takes.
 const SPIN_TIMEOUT: Duration = Duration::from_millis(50);
+/// How long an arm may take to stop, and how often it is looked at meanwhile.
+const STOPPING_DEADLINE: Duration = Duration::from_secs(2);
+const STOPPING_PERIOD: Duration = Duration::from_millis(10);
 /// How long the middleware may take to say goodbye.
 const SHUTDOWN_DEADLINE: Duration = Duration::from_secs(3);
 
@@ -127,7 +130,7 @@ async fn serve(name: &str, open: fn(Parameters) -> Result<Opened, String>) -> Re
     let mut goals = node.create_action_server("joint_trajectory_controller/follow_joint_trajectory")?;
     let mut recoveries = node.create_service::<Trigger::Service>("~/recover", QosProfile::services_default())?;
     let clock = Clock::new(pacing.clock);
-    let pace = Pace::create(&mut node, &pacing, clock, Arc::clone(&arm))?;
+    let pace = Pace::create(&mut node, &pacing, clock.clone(), Arc::clone(&arm))?;
     description.publish(&r2r::std_msgs::msg::String { data: urdf })?;
 
     let stop = Arc::new(AtomicBool::new(false));
@@ -146,11 +149,11 @@ async fn serve(name: &str, open: fn(Parameters) -> Result<Opened, String>) -> Re
     });
     r2r::log_info!(&logger, "{says}");
 
-    loop {
+    let ended = loop {
         tokio::select! {
-            _ = interrupt.recv() => break,
-            _ = terminate.recv() => break,
-            ended = &mut spinning => return Err(NodeError::Middleware(format!("{ended:?}"))),
+            _ = interrupt.recv() => break Ok(()),
+            _ = terminate.recv() => break Ok(()),
+            ended = &mut spinning => break Err(NodeError::Middleware(format!("{ended:?}"))),
             ended = &mut moving => {
                 return ended.unwrap_or_else(|panic| Err(NodeError::Middleware(panic.to_string())));
             }
@@ -161,12 +164,14 @@ async fn serve(name: &str, open: fn(Parameters) -> Result<Opened, String>) -> Re
                     r2r::log_error!(&logger, "a trajectory is refused: {why}");
                 }
             }
-            Some(request) = goals.next() => action::serve(request, Arc::clone(&arm), clock, &logger),
+            Some(request) = goals.next() => action::serve(request, Arc::clone(&arm), clock.clone(), &logger),
             Some(request) = recoveries.next() => recover(request, Arc::clone(&arm), logger.clone()),
         }
-    }
+    };
+    come_to_rest(&arm).await;
     stop.store(true, Ordering::Relaxed);
     let _ = moving.await;
+    ended?;
     drop((trajectories, goals, recoveries, description));
     if tokio::time::timeout(SHUTDOWN_DEADLINE, spinning).await.is_err() {
         // As in reorder_node: Fast DDS can take minutes to say goodbye (eProsima/Fast-DDS#6513).
@@ -174,6 +179,19 @@ async fn serve(name: &str, open: fn(Parameters) -> Result<Opened, String>) -> Re
     }
     drop(context);
     Ok(())
+}
+
+/// Stops an arm that is in motion, and waits until it rests: nobody leads it any further afterwards.
+async fn come_to_rest(arm: &SharedArm) {
+    lock(arm).stop();
+    let deadline = tokio::time::Instant::now() + STOPPING_DEADLINE;
+    while tokio::time::Instant::now() < deadline {
+        let present = lock(arm).present();
+        if present.ends_at_s <= present.now_s {
+            break;
+        }
+        tokio::time::sleep(STOPPING_PERIOD).await;
+    }
 }
 
 /// Has the arm go on, which may take a moment, and answers.

@@ -1,6 +1,7 @@
 //! The thread in which the arm's time passes.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use r2r::builtin_interfaces::msg::Time;
@@ -16,26 +17,36 @@ use crate::{Pacing, SharedArm, lock};
 const CLOCK_BEGINS_NS: i64 = 1_000_000_000;
 
 /// What the arm's time is in ROS time.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Clock {
-    began_ns: i64,
+    /// Later whenever the arm has fallen behind the system's clock, and goes on later.
+    began_ns: Arc<AtomicI64>,
+    is_published: bool,
 }
 
 impl Clock {
     /// The clock that is published, or the system's.
     pub(crate) fn new(published: bool) -> Self {
         let since_epoch = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-        Self { began_ns: if published { CLOCK_BEGINS_NS } else { since_epoch.as_nanos() as i64 } }
+        let began_ns = if published { CLOCK_BEGINS_NS } else { since_epoch.as_nanos() as i64 };
+        Self { began_ns: Arc::new(AtomicI64::new(began_ns)), is_published: published }
     }
 
-    pub(crate) fn stamp_ns(self, now_s: f64) -> i64 {
-        self.began_ns + (now_s * 1e9).round() as i64
+    /// The arm's time stood still for so long.
+    fn slip(&self, by: Duration) {
+        if !self.is_published {
+            self.began_ns.fetch_add(by.as_nanos() as i64, Ordering::Relaxed);
+        }
+    }
+
+    pub(crate) fn stamp_ns(&self, now_s: f64) -> i64 {
+        self.began_ns.load(Ordering::Relaxed) + (now_s * 1e9).round() as i64
     }
 
     /// A stamp on the arm's clock; `None` where there is none.
-    pub(crate) fn seconds(self, stamp: &Time) -> Option<f64> {
+    pub(crate) fn seconds(&self, stamp: &Time) -> Option<f64> {
         let stamp = Some(stamp_ns(stamp)).filter(|stamp| *stamp != 0)?;
-        Some((stamp - self.began_ns) as f64 * 1e-9)
+        Some((stamp - self.began_ns.load(Ordering::Relaxed)) as f64 * 1e-9)
     }
 }
 
@@ -71,7 +82,7 @@ impl Pace {
     /// Lets time pass until `stop` says so.
     pub(crate) fn run(self, stop: &AtomicBool) -> Result<(), NodeError> {
         let mut began = Instant::now();
-        let mut fault = None;
+        let (mut fault, mut is_heard) = (None, true);
         for tick in 0_u64.. {
             if stop.load(Ordering::Relaxed) {
                 break;
@@ -83,6 +94,7 @@ impl Pace {
             std::thread::sleep(due.saturating_duration_since(now));
             if now > due + self.most_behind {
                 began += now - due;
+                self.clock.slip(now - due);
             }
             let present = {
                 let mut arm = lock(&self.arm);
@@ -97,10 +109,17 @@ impl Pace {
                 fault = present.fault;
             }
             let stamp_ns = self.clock.stamp_ns(present.now_s);
-            if let Some(clock) = &self.clock_messages {
-                clock.publish(&ClockMessage { clock: time(stamp_ns) })?;
+            let clock = self.clock_messages.as_ref();
+            let told = clock.map_or(Ok(()), |clock| clock.publish(&ClockMessage { clock: time(stamp_ns) }));
+            let state = joint_state(&self.names, present.position, present.velocity, stamp_ns);
+            // An arm in motion must be led on whoever hears of it.
+            match told.and_then(|()| self.states.publish(&state)) {
+                Err(error) if is_heard => {
+                    r2r::log_error!(&self.logger, "joint states cannot be published: {error}");
+                    is_heard = false;
+                }
+                told => is_heard = told.is_ok(),
             }
-            self.states.publish(&joint_state(&self.names, present.position, present.velocity, stamp_ns))?;
         }
         Ok(())
     }

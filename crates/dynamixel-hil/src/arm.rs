@@ -1,7 +1,7 @@
 //! An arm of Dynamixel servos as an arm like any other.
 
 use planner::manipulator::{JointTrajectory, audit};
-use planner::{Arm, ArmLost, Controller, Present, Refused};
+use planner::{Arm, ArmLost, Controller, Present, Refused, START_TOLERANCE};
 
 use crate::bus::Counters;
 use crate::config::Config;
@@ -12,19 +12,22 @@ use crate::servo_state::ServoState;
 use crate::simulation::Simulation;
 use crate::statistics::StepTimes;
 use crate::trim::Trim;
-use crate::watch::Watchman;
+use crate::watch::{Watchman, disagreement};
 
 /// Tells the time in s: of the wall, or of an emulated bus that is run step by step.
 pub type Clock = Box<dyn Fn() -> f64 + Send>;
 
 /// Behind by more than so many steps, the arm goes on later: it would rush otherwise.
 const STEPS_BEHIND: f64 = 4.0;
+/// After a pause the joints are asked for so often, where an answer is missing.
+const PAUSE_TRIES: usize = 3;
 /// So much of a step passes on average between a goal's being sent and the middle of the time in which it holds.
 const HALF_A_STEP: f64 = 0.5;
 /// A trajectory may be faster than the bound by this much: what quintics overshoot, and rounding.
 const SPEED_TOLERANCE: f64 = 1.001;
 
-/// An arm on a bus that is open, holding where it stands.
+/// An arm on a bus that is open, holding where it stands. Dropped, it goes on holding at the last goal: [`Arm::stop`] it before, and run it
+/// to its rest.
 ///
 /// Every [`Arm::run`] is one step: a goal goes to all servos, and what they tell comes back. Goals are what the controller wants, shifted by what a
 /// proportional servo lags and sags behind it ([`crate`]).
@@ -42,6 +45,7 @@ pub struct DynamixelArm {
     step_times: StepTimes,
     watchman: Watchman,
     fault: Option<HilError>,
+    port_is_lost: bool,
     /// What is to be there as long as the arm is.
     simulation: Option<Simulation>,
 }
@@ -68,6 +72,7 @@ impl DynamixelArm {
             stepped_at_s: clock(),
             step_times: StepTimes::default(),
             fault: None,
+            port_is_lost: false,
             simulation: None,
             clock,
             config,
@@ -83,9 +88,10 @@ impl DynamixelArm {
     /// Switches all torques off: the arm falls, unless somebody holds it.
     ///
     /// # Errors
-    /// Where a servo does not answer.
+    /// The first servo that does not answer; all others are released.
     pub fn release(&mut self) -> Result<()> {
-        self.config.ids().into_iter().try_for_each(|id| self.link.bus.set_torque(id, false))
+        let released: Vec<_> = self.config.ids().into_iter().map(|id| self.link.bus.set_torque(id, false)).collect();
+        released.into_iter().collect()
     }
 
     /// What every servo told last, in the order of the configuration.
@@ -116,6 +122,9 @@ impl DynamixelArm {
     /// Reads where the joints are, makes that what is wanted, and switches the torques on.
     fn hold_here(&mut self) -> Result<()> {
         self.link.hear_surely()?;
+        if let Some(apart) = disagreement(&self.config, &self.joints, &self.link.states) {
+            return Err(apart);
+        }
         self.held = self.link.states.iter().map(|state| state.position).collect();
         let [position, _] = self.measured();
         self.controller.rest_at(self.now_s, &position);
@@ -135,7 +144,8 @@ impl DynamixelArm {
         let ahead_s = HALF_A_STEP / self.config.rate_hz;
         let [position, velocity, acceleration] = self.controller.at(self.now_s + ahead_s);
         let position = self.trim.shifted(position.as_slice());
-        let goals = self.joints.goals([&position, velocity.as_slice(), acceleration.as_slice()], &self.held);
+        let goals =
+            self.joints.goals([&position, velocity.as_slice(), acceleration.as_slice()], &self.held, &self.link.ranges);
         self.link.send(&goals)
     }
 
@@ -148,7 +158,10 @@ impl DynamixelArm {
         let moves = self.controller.ends_at_s() > self.now_s;
         if gap_s > self.config.watch.pause_s && moves && self.fault.is_none() {
             // The servos have long come to rest at the last goal: that is where to go on from, and not where the motion would be by now.
-            let _ = self.link.hear();
+            let heard = (0..PAUSE_TRIES).any(|_| self.link.hear().is_ok());
+            let [measured, _] = self.measured();
+            let stands = if heard { measured } else { self.desired(self.now_s - 1.0 / self.config.rate_hz) };
+            self.controller.rest_at(self.now_s, &stands);
             self.fail(HilError::Paused { pause_s: gap_s });
         }
         match self.send().and_then(|()| self.link.hear()) {
@@ -176,11 +189,13 @@ impl DynamixelArm {
         self.trim.learn(self.controller.at(asked_at_s)[0].as_slice(), position, 1.0 / self.config.rate_hz);
     }
 
-    /// After a stop, stands where the joints are if they press against something.
+    /// After a stop, joints that press against something stand where they are.
     fn give_way(&mut self, position: &[f64]) {
-        let rests = self.controller.ends_at_s() <= self.now_s;
-        if rests && self.watchman.presses(position, self.controller.at(self.now_s)[0].as_slice()) {
-            self.controller.rest_at(self.now_s, position);
+        if self.controller.ends_at_s() <= self.now_s {
+            let desired = self.desired(self.now_s);
+            if let Some(stand) = self.watchman.give_way(position, &desired) {
+                self.controller.rest_at(self.now_s, &stand);
+            }
         }
     }
 
@@ -202,27 +217,35 @@ impl DynamixelArm {
         }
     }
 
-    /// Stops: on the path where the servos can still be led along it, else where the joints are.
+    /// Stops on the path, along which servos that do not answer may still hear that they are led.
     fn fail(&mut self, why: HilError) {
-        if self.fault.is_some() {
-            return;
+        self.note_lost_port(&why);
+        if self.fault.is_none() {
+            self.controller.stop(self.now_s);
+            self.fault = Some(why);
         }
-        match why {
-            HilError::PortLost { .. } | HilError::AllSilent { .. } | HilError::Paused { .. } => {
-                let [position, _] = self.measured();
-                self.controller.rest_at(self.now_s, &position);
-            }
-            _ => self.controller.stop(self.now_s),
+    }
+
+    fn note_lost_port(&mut self, why: &HilError) {
+        if matches!(why, HilError::PortLost { .. }) && !std::mem::replace(&mut self.port_is_lost, true) {
+            self.link.bus.close();
         }
-        self.fault = Some(why);
     }
 
     /// Whether the servos may follow what `next` plays from `from_s` on.
     fn check(&self, next: &Controller, from_s: f64) -> std::result::Result<(), Refused> {
-        let ratio = audit(next.robot(), next.playing()).max_ratio.velocity;
-        if ratio > SPEED_TOLERANCE {
+        let audit = audit(next.robot(), next.playing());
+        let refused = |why: String| Err(Refused::Goal(why));
+        let (velocity, acceleration) = (audit.max_ratio.velocity, audit.max_ratio.acceleration);
+        if velocity > SPEED_TOLERANCE {
             let limit = self.config.velocity_rad_s;
-            return Err(Refused::Goal(format!("it is {ratio:.2} times as fast as this arm may be ({limit} rad/s)")));
+            return refused(format!("it is {velocity:.2} times as fast as this arm may be ({limit} rad/s)"));
+        }
+        if acceleration > SPEED_TOLERANCE {
+            return refused(format!("its acceleration is {acceleration:.2} times what this arm's limits allow"));
+        }
+        if audit.position_margin < -START_TOLERANCE {
+            return refused(format!("it leads {:.3} rad beyond the position limit of a joint", -audit.position_margin));
         }
         if self.controller.ends_at_s() <= self.now_s {
             let [stands, _] = self.measured();
@@ -272,10 +295,17 @@ impl Arm for DynamixelArm {
     }
 
     fn recover(&mut self) -> std::result::Result<(), Refused> {
-        let Some(fault) = &self.fault else { return Ok(()) };
-        let port_is_lost = matches!(fault, HilError::PortLost { .. });
-        let mended = self.link.mend(&self.config, port_is_lost).and_then(|()| self.hold_here());
-        mended.map_err(|why| Refused::Faulty(why.to_string()))?;
+        if self.fault.is_none() {
+            return Ok(());
+        }
+        let mended = self.link.mend(&self.config, self.port_is_lost).and_then(|()| {
+            self.port_is_lost = false;
+            self.hold_here()
+        });
+        if let Err(why) = mended {
+            self.note_lost_port(&why);
+            return Err(Refused::Faulty(why.to_string()));
+        }
         self.fault = None;
         self.stepped_at_s = (self.clock)();
         Ok(())

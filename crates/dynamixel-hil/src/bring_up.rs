@@ -7,14 +7,16 @@ use crate::config::Config;
 use crate::error::{HilError, Result};
 use crate::model::Model;
 use crate::register::{
-    DRIVE_MODE, GOAL_POSITION, Mode, OPERATING_MODE, POSITION_D_GAIN, POSITION_I_GAIN, POSITION_P_GAIN,
-    PRESENT_POSITION, PROFILE_ACCELERATION, PROFILE_VELOCITY, RETURN_DELAY_TIME, Register, SECONDARY_ID, TORQUE_ENABLE,
-    VELOCITY_UNIT_RAD_S, within_a_turn,
+    DRIVE_MODE, GOAL_POSITION, MAX_POSITION_LIMIT, MIN_POSITION_LIMIT, Mode, OPERATING_MODE, POSITION_D_GAIN,
+    POSITION_I_GAIN, POSITION_P_GAIN, PRESENT_POSITION, PROFILE_ACCELERATION, PROFILE_VELOCITY, RETURN_DELAY_TIME,
+    Register, SECONDARY_ID, TORQUE_ENABLE, VELOCITY_UNIT_RAD_S, within_a_turn,
 };
 use crate::servo_state::ServoState;
 
 /// Bit 0 of Drive Mode: clockwise is positive.
 const REVERSED: u32 = 0x01;
+/// So far outside of its limits, in pulses, a servo is put to its limit: 0.03 rad, as an arm sags on its rest.
+const OUTSIDE: i32 = 20;
 /// As a Secondary ID.
 const NO_ID: u32 = 255;
 /// A servo that starts anew is back by then.
@@ -42,14 +44,19 @@ pub fn identify(bus: &mut Bus, config: &Config) -> Result<()> {
     Ok(())
 }
 
-/// Has servos that latched an error start anew, and waits for them.
+/// Has servos that latched an error start anew, and waits for them. One that holds in spite of it (low voltage) would drop the arm.
 ///
 /// # Errors
-/// Where one does not come back, or latches the error again.
+/// Where one still holds, does not come back, or latches the error again.
 pub(crate) fn clear_errors(bus: &mut Bus, config: &Config) -> Result<()> {
     for servo in &config.servos {
-        if bus.hardware_errors(servo.id)?.0 == 0 {
+        let errors = bus.hardware_errors(servo.id)?;
+        if errors.0 == 0 {
             continue;
+        }
+        if bus.read(servo.id, TORQUE_ENABLE)? != 0 {
+            let why = format!("only starting anew clears that {errors}");
+            return Err(HilError::WouldDrop { servo: servo.label(), why });
         }
         bus.reboot(servo.id)?;
         let back = |bus: &mut Bus| {
@@ -63,25 +70,45 @@ pub(crate) fn clear_errors(bus: &mut Bus, config: &Config) -> Result<()> {
     Ok(())
 }
 
-/// Sets every servo up. Torque goes off only where a setting differs that cannot be written under torque; a servo that already
-/// holds goes on holding.
+/// Sets every servo up; one that already holds goes on holding. Returns the raw positions that each takes as goals, least and most.
 ///
 /// # Errors
-/// Where a servo does not answer, refuses, or has latched an error.
-pub(crate) fn set_up(bus: &mut Bus, config: &Config) -> Result<()> {
+/// Where a servo does not answer, refuses, or has latched an error; where one that holds would have to let go for a setting that
+/// cannot be written under torque; where one stands outside of its own limits.
+pub(crate) fn set_up(bus: &mut Bus, config: &Config) -> Result<Vec<[i32; 2]>> {
+    // The other bits of Drive Mode choose profiles by time, and torque by goals: both off.
+    let kept = |reversed: bool| {
+        let drive_mode = u32::from(reversed) * REVERSED;
+        [
+            (DRIVE_MODE, drive_mode),
+            (OPERATING_MODE, Mode::Position as u32),
+            (RETURN_DELAY_TIME, 0),
+            (SECONDARY_ID, NO_ID),
+        ]
+    };
+    // Nothing is written before it is known that no servo has to let go for it.
+    for servo in &config.servos {
+        if bus.read(servo.id, TORQUE_ENABLE)? != 0 {
+            for (register, value) in kept(servo.reversed) {
+                let is = bus.read(servo.id, register)?;
+                if is != value {
+                    let why = format!("its {} of {is} has to be {value}, which torque forbids to write", register.name);
+                    return Err(HilError::WouldDrop { servo: servo.label(), why });
+                }
+            }
+        }
+    }
     // Before all else: a servo that also obeys what another one is told would take over that one's sense of rotation.
     for servo in &config.servos {
         write_kept(bus, servo.id, &[(SECONDARY_ID, NO_ID)])?;
     }
+    let mut ranges = Vec::with_capacity(config.servos.len());
     for servo in &config.servos {
         let errors = bus.hardware_errors(servo.id)?;
         if errors.0 != 0 {
             return Err(HilError::Hardware { servo: servo.label(), errors });
         }
-        // The other bits of Drive Mode choose profiles by time, and torque by goals: both off.
-        let drive_mode = u32::from(servo.reversed) * REVERSED;
-        let kept = [(DRIVE_MODE, drive_mode), (OPERATING_MODE, Mode::Position as u32), (RETURN_DELAY_TIME, 0)];
-        write_kept(bus, servo.id, &kept)?;
+        write_kept(bus, servo.id, &kept(servo.reversed))?;
         for (register, value) in [
             (POSITION_P_GAIN, u32::from(config.position_p_gain)),
             // With these the feed-forward would no longer be right.
@@ -95,20 +122,26 @@ pub(crate) fn set_up(bus: &mut Bus, config: &Config) -> Result<()> {
         }
         let (address, bytes) = ServoState::indirect_addresses();
         bus.write_bytes(servo.id, address, &bytes)?;
+        let [least, most] = [MIN_POSITION_LIMIT, MAX_POSITION_LIMIT].map(|limit| bus.read(servo.id, limit));
+        let [least, most] = [least? as i32, most? as i32];
+        ranges.push([least, most]);
         // A servo without torque is to hold where it stands once it gets some, and not where it stood at some other time.
         if bus.read(servo.id, TORQUE_ENABLE)? == 0 {
-            let position = bus.read(servo.id, PRESENT_POSITION)?;
-            bus.write(servo.id, GOAL_POSITION, within_a_turn(position as i32) as u32)?;
+            let position = within_a_turn(bus.read(servo.id, PRESENT_POSITION)? as i32);
+            let goal = position.clamp(least, most);
+            if (goal - position).abs() > OUTSIDE {
+                return Err(HilError::Outside { servo: servo.label(), position, least, most });
+            }
+            bus.write(servo.id, GOAL_POSITION, goal as u32)?;
         }
     }
-    Ok(())
+    Ok(ranges)
 }
 
-/// Writes settings that a servo keeps without power, where they differ, with its torque off.
+/// Writes settings that a servo keeps without power, where they differ.
 fn write_kept(bus: &mut Bus, id: u8, wanted: &[(Register, u32)]) -> Result<()> {
     for &(register, value) in wanted {
         if bus.read(id, register)? != value {
-            bus.set_torque(id, false)?;
             bus.write(id, register, value)?;
         }
     }

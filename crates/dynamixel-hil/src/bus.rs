@@ -60,6 +60,11 @@ impl Bus {
         Ok(Self { sdk, port: port.to_owned(), baud, names, counters: Counters::default() })
     }
 
+    /// Lets a port go that is gone: as long as anybody has it open, the system gives an adapter that comes back another name.
+    pub(crate) fn close(&self) {
+        self.sdk.close();
+    }
+
     /// What happened so far.
     pub fn counters(&self) -> Counters {
         self.counters

@@ -1,6 +1,7 @@
 //! The configuration file of an arm (`config/arms/*.yaml`).
 
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
@@ -148,8 +149,9 @@ impl Config {
             if !ids.insert(servo.id) {
                 return Err(format!("two servos have the id {}", servo.id));
             }
-            if !servo.offset_rad.is_finite() {
-                return Err(format!("{}: offset_rad must be a number", servo.label()));
+            // Also no number of degrees by mistake.
+            if !(-PI..=PI).contains(&servo.offset_rad) {
+                return Err(format!("{}: offset_rad must be from -pi to pi, not {}", servo.label(), servo.offset_rad));
             }
         }
         let robot = self.shipped()?;
@@ -192,6 +194,7 @@ mod tests {
             ("XM430-W350, joint", "XM430, joint", "XM430"),
             ("joint: wrist_rotate", "joint: wrist", "vx300s has no joint wrist"),
             (", joint: waist", "", "no servo moves joint waist"),
+            ("reversed: true", "offset_rad: 90", "servo 2 (shoulder): offset_rad must be from -pi to pi, not 90"),
             ("robot: vx300s", "robot: hal", "hal"),
             ("reversed: true", "reverse: true", "reverse"),
         ] {

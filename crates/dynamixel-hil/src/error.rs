@@ -103,7 +103,9 @@ pub enum HilError {
         servo: ServoName,
     },
     /// Not one servo answers.
-    #[error("no servo answers on port {port}: is the arm powered, and is {baud} baud its rate?")]
+    #[error(
+        "no servo answers on port {port}: is the arm powered, is {baud} baud its rate, and is the adapter as quick as latency_ms says?"
+    )]
     AllSilent {
         /// The port.
         port: String,
@@ -152,6 +154,42 @@ pub enum HilError {
     Limp {
         /// Which.
         servo: ServoName,
+    },
+    /// A servo that holds would have to let go.
+    #[error(
+        "{servo} holds the arm, and {why}: support the arm, switch its torque off (`dynamixel-hil release`), and start again"
+    )]
+    WouldDrop {
+        /// Which.
+        servo: ServoName,
+        /// What it would have to let go for.
+        why: String,
+    },
+    /// The servos of one joint do not agree where it is.
+    #[error(
+        "{servo} and {other} move the same joint and are {by_rad:.3} rad apart: calibrate them, or give them their offset_rad"
+    )]
+    Apart {
+        /// The one.
+        servo: ServoName,
+        /// The other.
+        other: ServoName,
+        /// How far.
+        by_rad: f64,
+    },
+    /// A servo stands where it takes no goal.
+    #[error(
+        "{servo} stands at {position}, outside of its own limits of {least} to {most}, and could not be held there"
+    )]
+    Outside {
+        /// Which.
+        servo: ServoName,
+        /// In pulses.
+        position: i32,
+        /// Min Position Limit.
+        least: i32,
+        /// Max Position Limit.
+        most: i32,
     },
     /// A joint does not get where it is to be.
     #[error("joint {joint} is {by_rad:.3} rad from where it is to be: something is in its way, or {servo} is too weak")]

@@ -12,8 +12,9 @@ use crate::servo_state::ServoState;
 const FULL_PWM: f64 = 885.0;
 /// A unit of the Position P Gain.
 const P_GAIN_UNIT: f64 = 1.0 / 128.0;
-/// The raw positions that position control takes.
-const GOALS: [i32; 2] = [0, 4095];
+/// Servos of one joint that read positions farther apart, in rad, would press against each other: gears have a play of 0.004 rad, and
+/// links that bend under half the arm's weight some 0.02.
+const APART_RAD: f64 = 0.05;
 
 /// The servos of an arm, seen as joints.
 ///
@@ -63,8 +64,15 @@ impl Joints {
     }
 
     /// Goal Position of every servo for a desired position, velocity and acceleration of the joints; `held` is where those without a
-    /// joint stay, as raw positions by servo.
-    pub(crate) fn goals(&mut self, [position, velocity, acceleration]: [&[f64]; 3], held: &[i32]) -> Vec<u32> {
+    /// joint stay, as raw positions by servo. A joint goes no farther than all its servos take as goals by their `ranges` of raw positions: one
+    /// that refuses would stay behind, and press against the others.
+    pub(crate) fn goals(
+        &mut self,
+        [position, velocity, acceleration]: [&[f64]; 3],
+        held: &[i32],
+        ranges: &[[i32; 2]],
+    ) -> Vec<u32> {
+        let bounds = self.bounds(ranges);
         if let Some(dynamics) = &self.robot.dynamics {
             dynamics.torque(position, velocity, acceleration, &mut self.torque);
         }
@@ -72,10 +80,36 @@ impl Joints {
             None => *held,
             Some(j) => {
                 let ahead = (self.torque[j] + self.damping_n_m_s[j] * velocity[j]) / self.stiffness_n_m[j];
-                pulses(position[j] - seat.offset_rad + ahead).clamp(GOALS[0], GOALS[1])
+                pulses((position[j] + ahead).max(bounds[j][0]).min(bounds[j][1]) - seat.offset_rad)
             }
         };
-        self.servos.iter().zip(held).map(goal).map(|pulses| pulses as u32).collect()
+        let goals = self.servos.iter().zip(held).map(goal);
+        // What rounding makes of a bound is a pulse at most.
+        goals.zip(ranges).map(|(goal, [least, most])| goal.max(*least).min(*most) as u32).collect()
+    }
+
+    /// Where all servos of a joint take goals, least and most, in rad.
+    fn bounds(&self, ranges: &[[i32; 2]]) -> Vec<[f64; 2]> {
+        let mut bounds = vec![[f64::NEG_INFINITY, f64::INFINITY]; self.torque.len()];
+        for (seat, range) in self.servos.iter().zip(ranges) {
+            if let Some(joint) = seat.joint {
+                let [least, most] = range.map(|raw| angle_rad(raw) + seat.offset_rad);
+                bounds[joint] = [bounds[joint][0].max(least), bounds[joint][1].min(most)];
+            }
+        }
+        bounds
+    }
+
+    /// Two servos of one joint that do not agree where it is, and by how much, in rad.
+    pub(crate) fn apart(&self, states: &[ServoState]) -> Option<([usize; 2], f64)> {
+        let place = |servo: usize| angle_rad(states[servo].position) + self.servos[servo].offset_rad;
+        let pairs = (0..self.servos.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
+        let of_one_joint = |[a, b]: &[usize; 2]| {
+            let [a, b] = [*a, *b].map(|servo| self.servos[servo].joint);
+            a.is_some() && a == b
+        };
+        let gaps = pairs.filter(of_one_joint).map(|[a, b]| ([a, b], (place(a) - place(b)).abs()));
+        gaps.max_by(|(_, x), (_, y)| x.total_cmp(y)).filter(|(_, by_rad)| *by_rad > APART_RAD)
     }
 
     /// Positions and velocities of the joints, in rad and rad/s: means over the servos of each, those without torque left out where
@@ -102,6 +136,9 @@ mod tests {
 
     const SHIPPED: &str = include_str!("../../../config/arms/vx300s.yaml");
 
+    /// As the factory sends servos.
+    const ANY: [[i32; 2]; 9] = [[0, 4095]; 9];
+
     fn joints() -> Joints {
         let config = Config::from_yaml(SHIPPED).unwrap();
         let robot = config.robot().unwrap();
@@ -115,7 +152,7 @@ mod tests {
         let rest = [0.0; 6];
         // Stretched out the arm weighs on the shoulder, not on the waist.
         let stretched = [0.5, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let goals = joints.goals([&stretched, &rest, &rest], &[7; 9]);
+        let goals = joints.goals([&stretched, &rest, &rest], &[7; 9], &ANY);
         assert_eq!((goals[0], goals[8]), (pulses(0.5) as u32, 7));
         assert_eq!(goals[1], goals[2]);
         // It turns the shoulder down, towards positive angles: about 1.5 kg at 0.45 m on 2·10.6·4.6 N·m/rad. The goal lies above.
@@ -127,12 +164,37 @@ mod tests {
     fn a_goal_leads_by_the_lag_of_the_servo() {
         let mut joints = joints();
         let (q, rest, moving) = ([0.0, -1.5, 1.5, 0.0, 0.0, 0.0], [0.0; 6], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let standing = joints.goals([&q, &rest, &rest], &[0; 9]);
-        let going = joints.goals([&q, &moving, &rest], &[0; 9]);
+        let standing = joints.goals([&q, &rest, &rest], &[0; 9], &ANY);
+        let going = joints.goals([&q, &moving, &rest], &[0; 9], &ANY);
         // 1 rad/s at a no-load speed of 30 rev/min and 800/128·651.9/885 = 4.604 of full duty a rad.
         let lead = f64::from(going[0]) - f64::from(standing[0]);
         let expected = 1.0 / (30.0 * TAU / 60.0) / 4.604 * 4096.0 / TAU;
         assert!((lead - expected).abs() <= 1.0, "{lead} {expected}");
+    }
+
+    /// The shoulder's second servo takes less than the first: neither is told more, or they would press against each other.
+    #[test]
+    fn a_joint_goes_no_farther_than_any_of_its_servos() {
+        let mut joints = joints();
+        let mut ranges = ANY;
+        (ranges[1], ranges[2]) = ([841, 2867], [900, 2800]);
+        for (shoulder, expected) in [(-1.85, 900), (1.25, 2800)] {
+            let q = [0.0, shoulder, 0.0, 0.0, 0.0, 0.0];
+            let goals = joints.goals([&q, &[0.0; 6], &[0.0; 6]], &[0; 9], &ranges);
+            assert_eq!([goals[1], goals[2]], [expected; 2], "{shoulder}");
+        }
+    }
+
+    #[test]
+    fn servos_of_one_joint_that_disagree_are_named() {
+        let joints = joints();
+        let mut states = vec![ServoState { position: 2048, ..ServoState::default() }; 9];
+        states[6].position = 3000;
+        assert_eq!(joints.apart(&states), None);
+        states[4].position = 2048 + 40;
+        let (servos, by_rad) = joints.apart(&states).unwrap();
+        assert_eq!(servos, [3, 4]);
+        assert!((by_rad - 40.0 * TAU / 4096.0).abs() < 1e-12);
     }
 
     #[test]

@@ -21,6 +21,8 @@ pub(crate) struct Link {
     pub(crate) states: Vec<ServoState>,
     /// How long goals and the question take on the wire, in s: then servos look where they are.
     pub(crate) asks_after_s: f64,
+    /// The raw positions that each servo takes as goals, least and most.
+    pub(crate) ranges: Vec<[i32; 2]>,
 }
 
 impl Link {
@@ -28,13 +30,13 @@ impl Link {
         let names: BTreeMap<_, _> = config.servos.iter().map(|servo| (servo.id, servo.name.clone())).collect();
         let mut bus = Bus::open(port, config.baud, config.latency_ms, names)?;
         identify(&mut bus, config)?;
-        set_up(&mut bus, config)?;
+        let ranges = set_up(&mut bus, config)?;
         let ids = config.ids();
         let read = bus.group_read(&ids, FIRST_INDIRECT_DATA, ServoState::length())?;
         let write = bus.group_write(&ids, GOAL_POSITION)?;
         // Ten bits a byte; 14 bytes a packet, with an ID and four bytes of goal for each servo in the one, and an ID in the other.
         let asks_after_s = 10.0 * (2 * 14 + 6 * ids.len()) as f64 / f64::from(config.baud);
-        Ok(Self { bus, read, write, states: vec![ServoState::default(); ids.len()], asks_after_s })
+        Ok(Self { bus, read, write, states: vec![ServoState::default(); ids.len()], asks_after_s, ranges })
     }
 
     /// Sets the servos up again after a fault, on a port that is opened again where it was lost.
@@ -46,7 +48,8 @@ impl Link {
         }
         identify(&mut self.bus, config)?;
         clear_errors(&mut self.bus, config)?;
-        set_up(&mut self.bus, config)
+        self.ranges = set_up(&mut self.bus, config)?;
+        Ok(())
     }
 
     /// Sends goals.

@@ -39,6 +39,10 @@ pub const OPERATING_MODE: Register = Register::new(11, 1, "Operating Mode");
 pub const SECONDARY_ID: Register = Register::new(12, 1, "Secondary(Shadow) ID");
 /// In pulses.
 pub const HOMING_OFFSET: Register = Register::new(20, 4, "Homing Offset");
+/// In pulses: a servo takes no goal above.
+pub const MAX_POSITION_LIMIT: Register = Register::new(48, 4, "Max Position Limit");
+/// In pulses: a servo takes no goal below.
+pub const MIN_POSITION_LIMIT: Register = Register::new(52, 4, "Min Position Limit");
 /// 0 or 1.
 pub const TORQUE_ENABLE: Register = Register::new(64, 1, "Torque Enable");
 /// See [`HardwareErrors`](crate::HardwareErrors).

@@ -86,6 +86,8 @@ impl Sdk {
             if !port.call_method1("setBaudRate", (baud,))?.extract::<bool>()? {
                 return Ok(Err(format!("the SDK does not know {baud} baud")));
             }
+            // Two masters would drive the arm to and fro between what they want.
+            port.getattr("ser")?.setattr("exclusive", true)?;
             let port = port.unbind();
             Ok(Ok(Self { port, packets, module: module.clone_ref(py) }))
         })
@@ -241,10 +243,16 @@ impl Sdk {
     }
 }
 
+impl Sdk {
+    /// Closes the port: what is asked from now on finds none. Nothing can be done about a port that does not close.
+    pub(crate) fn close(&self) {
+        let _ = self.call(|py| self.port.bind(py).call_method0("closePort").map(drop));
+    }
+}
+
 impl Drop for Sdk {
     fn drop(&mut self) {
-        // Nothing can be done about a port that does not close.
-        let _ = self.call(|py| self.port.bind(py).call_method0("closePort").map(drop));
+        self.close();
     }
 }
 

@@ -139,6 +139,17 @@ fn low_voltage() {
     let present = bench.run(1.0);
     assert!(present.ends_at_s < present.now_s);
     assert!(bench.fastest_rad_s < FASTEST_RAD_S);
+    // Low voltage leaves the torque on, and only starting anew forgets it: that would drop the arm.
+    bench.simulation.with_bus(|bus| bus.faults_mut().supply_v = 12.0);
+    let why = bench.meanwhile(|arm| arm.recover()).unwrap_err().to_string();
+    assert!(
+        why.contains("servo 1 (waist) holds the arm, and only starting anew clears that its input voltage"),
+        "{why}"
+    );
+    let before = bench.simulation.view().now().position;
+    bench.run(0.3);
+    let after = bench.simulation.view().now().position;
+    assert!(before.iter().zip(&after).all(|(a, b)| (a - b).abs() < 0.01), "{before:?} {after:?}");
 }
 
 #[test]
