@@ -16,6 +16,7 @@ use crate::setup;
 const DRAWING_BOUNDS: [(&str, f64); 2] = [("tracking_rms_rad", 0.02), ("pose_error_max_m", 0.005)];
 /// Tracking on a bus that damages packets, as a multiple of that on one which does not.
 const SOAK_RATIO: f64 = 2.0;
+const PRIORITY: &str = "-15";
 
 /// Draws every recorded shape, prints the table and writes `target/hil/summary.json`.
 pub(crate) fn run(layout: &Layout) -> Outcome {
@@ -70,8 +71,9 @@ fn command(layout: &Layout, arguments: &[&str], shapes: &[PathBuf]) -> Outcome<V
     let program =
         program.ok_or_else(|| Failure::step("cargo build", "no executable dynamixel-hil was built".to_owned()))?;
     println!("drawing {} shapes in real time …", shapes.len());
-    let mut command = layout.command(program);
-    command.args(arguments).args(shapes).stderr(Stdio::inherit());
+    // A control loop is to go before whatever else the machine does; where that is not permitted, `nice` says so and goes on.
+    let mut command = layout.command("nice");
+    command.args(["-n", PRIORITY]).arg(program).args(arguments).args(shapes).stderr(Stdio::inherit());
     let output = command.output().map_err(Failure::io("run", program))?;
     if !output.status.success() {
         return Err(Failure::Command { what: "dynamixel-hil".into(), status: output.status });
