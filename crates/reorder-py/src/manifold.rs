@@ -11,6 +11,8 @@ use crate::rowwise;
 use crate::space::{Chosen, Space, on_group, on_space};
 
 type Numbers<'py> = Bound<'py, PyAny>;
+/// What makes a manifold again, and from what.
+type Reduced<'py> = (Bound<'py, PyAny>, (&'static str, Option<f64>));
 type Result<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
 /// A Riemannian manifold with its metric. Its points and tangents are rows of arrays; see ``Rn``, ``S2``, ``SO3``, ``SE2``, ``SE3``, ``Sim2``.
@@ -159,7 +161,7 @@ impl Manifold {
         on_group!(self.space, space => rowwise::group_log(py, space, &a), else Err(self.no_group()))
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (&'static str, Option<f64>))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         Ok((py.get_type::<Self>().into_any(), (self.name(), self.metres_per_radian)))
     }
 

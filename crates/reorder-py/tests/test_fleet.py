@@ -1,5 +1,6 @@
 """Replays on a Ray cluster of two nodes on this machine."""
 
+import json
 import os
 import subprocess
 import sys
@@ -14,6 +15,7 @@ from ray.cluster_utils import Cluster
 
 import reorder
 from reorder import fleet
+from reorder.fleet import _worker
 
 MIB = 1 << 20
 
@@ -61,14 +63,25 @@ def test_a_bag_that_crashes_its_reader_is_reported_and_the_rest_go_on(tmp_path, 
     bags, output = tmp_path / "bags", tmp_path / "out"
     write_bags(bags, 3)
     many, _ = helix_poses(400_000)
-    # One message is more than may be unpacked, which is an error; many of them make the worker abort.
+    # One message of that size, or many small ones.
     reorder.write_poses(bags / "array.mcap", many, topic="/tool")
     reorder.write_poses(bags / "large.mcap", many, topic="/tool", stamps_ns=np.arange(len(many)))
     run = fleet.replay(bags, output, address=address, memory=48 * MIB, retries=1, progress=False)
     assert [bag["status"] for bag in run.bags] == ["broken", "broken", "done", "done", "done"]
-    assert "array.mcap: a bag may take 0.05 GiB of memory, and this one needs more" in run.bags[0]["error"]
+    assert "array.mcap: " in run.bags[0]["error"] and "0.05 GiB of memory" in run.bags[0]["error"]
     assert "large.mcap: its worker died, 2 times in a row (a bag may take 0.05 GiB of memory)" in run.bags[1]["error"]
     assert sorted(contents(output)) == ["run_000.mcap", "run_001.mcap", "run_002.mcap"]
+
+
+def test_what_cannot_be_unpacked_for_want_of_memory_is_not_damaged(tmp_path):
+    output = tmp_path / "out.mcap"
+    output.write_text("half of a bag")
+    damaged = {"bag": "a.mcap", "status": "done", "error": None, "lost": ["a.mcap is damaged after 3 messages"], "sets": []}
+    assert json.loads(_worker._enough(json.dumps(damaged), str(output), 1 << 30)) == damaged and output.exists()
+    starved = {**damaged, "lost": ["a.mcap is damaged after 3 readable messages: a chunk cannot be decompressed: out of memory"]}
+    told = json.loads(_worker._enough(json.dumps(starved), str(output), 1 << 30))
+    assert (told["status"], told["lost"]) == ("broken", []) and not output.exists()
+    assert told["error"] == "a.mcap: a bag may take 1.00 GiB of memory, and this one needs more"
 
 
 def test_what_cannot_begin_is_said_in_one_sentence(tmp_path, address):
