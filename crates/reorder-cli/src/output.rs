@@ -87,25 +87,6 @@ impl<'a> Pending<'a> {
     }
 }
 
-/// No result may take the place of what it is made from, nor of a file in a folder that is, or of another result.
-pub(crate) fn spare<'a>(
-    inputs: impl Iterator<Item = &'a Path>,
-    outputs: impl Iterator<Item = &'a Path>,
-) -> Result<(), Failure> {
-    let mut taken: Vec<PathBuf> = inputs.filter_map(|path| path.canonicalize().ok()).collect();
-    for path in outputs {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let in_folder = || Ok(folder.canonicalize()?.join(path.file_name().unwrap_or_default()));
-        let place = path.canonicalize().or_else(|_| in_folder()).map_err(|error| unwritten(path, &error))?;
-        if taken.iter().any(|taken| place.starts_with(taken)) {
-            let path = path.display();
-            return Err(Failure::BadInput(format!("{path}: already an input or another output of this command")));
-        }
-        taken.push(place);
-    }
-    Ok(())
-}
-
 fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
     Failure::BadInput(format!("{}: {error}", path.display()))
 }

@@ -3,14 +3,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use bag_replay::{load_robot, spare};
 use clap::{Args, ValueEnum};
-use planner::manipulator::{ManipulatorError, Robot};
 use planner::reorder::Verdict;
 use planner::{Config, Report, Request, plan};
 
 use crate::failure::Failure;
 use crate::order::Topology;
-use crate::output::{Pending, print, spare, trajectory_csv, write_bag};
+use crate::output::{Pending, print, trajectory_csv, write_bag};
 use crate::source::Source;
 
 #[derive(Args)]
@@ -80,8 +80,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let urdf = arguments.robot.ends_with(".urdf").then(|| Path::new(&arguments.robot));
     let inputs = [&arguments.limits, &arguments.config].into_iter().filter_map(|path| path.as_deref());
     let outputs = [&arguments.output, &arguments.report].into_iter().filter_map(|path| path.as_deref());
-    spare(inputs.chain(urdf).chain([arguments.source.input.as_path()]), outputs)?;
-    let robot = load_robot(&arguments.robot, arguments.limits.as_deref())?;
+    spare(inputs.chain(urdf).chain([arguments.source.input.as_path()]), outputs).map_err(Failure::bad_input)?;
+    let robot = load_robot(&arguments.robot, arguments.limits.as_deref()).map_err(Failure::bad_input)?;
     let config = configure(arguments)?;
     let set = arguments.source.poses()?;
     let request =
@@ -130,39 +130,4 @@ fn configure(arguments: &Arguments) -> Result<Config, Failure> {
     config.metres_per_radian = arguments.metres_per_radian.unwrap_or(config.metres_per_radian);
     config.timing.rate_hz = arguments.rate.unwrap_or(config.timing.rate_hz);
     Ok(config)
-}
-
-/// A shipped robot, with its own limits or others, or a robot from files.
-pub(crate) fn load_robot(name: &str, limits: Option<&Path>) -> Result<Robot, Failure> {
-    let read = |path: &Path| {
-        fs::read_to_string(path).map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))
-    };
-    let in_file = |path: &Path| {
-        let path = path.display().to_string();
-        move |error| Failure::BadInput(format!("{path}: {error}"))
-    };
-    // Which of the two is at fault where they do not fit is for the user to say.
-    let in_files = |urdf: &Path, settings: &Path| {
-        let both = format!("{} with {}", urdf.display(), settings.display());
-        let (urdf, settings) = (urdf.display().to_string(), settings.display().to_string());
-        move |error: ManipulatorError| {
-            let at_fault = match error {
-                ManipulatorError::Urdf { .. } | ManipulatorError::LinkInertia { .. } => urdf,
-                ManipulatorError::Settings { .. } => settings,
-                _ => both,
-            };
-            Failure::BadInput(format!("{at_fault}: {error}"))
-        }
-    };
-    let is_file = name.ends_with(".urdf");
-    match limits {
-        None if is_file => {
-            Err(Failure::BadInput(format!("{name}: a URDF has no acceleration and jerk limits: give --limits")))
-        }
-        None => Robot::shipped(name).map_err(Failure::bad_input),
-        Some(limits) if is_file => {
-            Robot::from_urdf(&read(Path::new(name))?, &read(limits)?).map_err(in_files(Path::new(name), limits))
-        }
-        Some(limits) => Robot::shipped_with(name, &read(limits)?).map_err(in_file(limits)),
-    }
 }

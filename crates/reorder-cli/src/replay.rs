@@ -1,32 +1,22 @@
 //! `reorder replay`: recordings put in order, one bag or many.
 
-mod bag;
-mod inputs;
-mod score;
-mod summary;
-
-use std::collections::HashSet;
-use std::fs;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
+use ::report::counted;
+use bag_replay::{BagSummary, Input, Status, Task, find, load_robot, outputs, replay, table};
 use clap::{Args, ValueEnum};
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
-use planner::pose_bag::{Grouping, Selection, remove_abandoned};
-use planner::reorder::{Options, Weight};
+use planner::pose_bag::Grouping;
+use planner::reorder::Weight;
 use rayon::prelude::*;
 
 use crate::failure::Failure;
 use crate::order::{Topology, weight};
-use crate::output::{print, spare};
-use crate::plan::{MinimumVerdict, load_robot};
+use crate::output::print;
+use crate::plan::MinimumVerdict;
 use crate::source::frame_pair;
-use ::report::counted;
-use bag::{Task, replay};
-use inputs::Input;
-use summary::{BagSummary, Status, table};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -83,8 +73,14 @@ fn seconds(text: &str) -> Result<u64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let inputs = inputs::find(&arguments.bags)?;
-    let outputs = outputs(arguments, &inputs)?;
+    let inputs = find(&arguments.bags).map_err(Failure::bad_input)?;
+    let outputs: Vec<Option<PathBuf>> = match &arguments.output {
+        Some(output) => {
+            let outputs = outputs(&arguments.bags, &inputs, output).map_err(Failure::bad_input)?;
+            outputs.into_iter().map(Some).collect()
+        }
+        None => vec![None; inputs.len()],
+    };
     let task = task(arguments)?;
     let bar = progress(&inputs);
     let done = AtomicUsize::new(0);
@@ -109,68 +105,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     verdict(&bags, arguments.robot.is_some())
 }
 
-/// The file for every bag.
-fn outputs(arguments: &Arguments, inputs: &[Input]) -> Result<Vec<Option<PathBuf>>, Failure> {
-    let Some(output) = &arguments.output else { return Ok(vec![None; inputs.len()]) };
-    let is_file = output.extension().is_some_and(|extension| extension == "mcap") && !output.is_dir();
-    if is_file && inputs.len() > 1 {
-        let (output, bags) = (output.display(), inputs.len());
-        return Err(Failure::BadInput(format!("{output} is one file for {bags} bags: name a folder")));
-    }
-    let folder =
-        if is_file { output.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")) } else { output };
-    let named = |error: std::io::Error| Failure::BadInput(format!("{}: {error}", folder.display()));
-    if !is_file {
-        // The next run would find the outputs of this one among its bags.
-        let within = |searched: &&PathBuf| {
-            let searched = fs::canonicalize(searched).ok().filter(|path| path.is_dir());
-            let from = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-            let place = from.ancestors().find_map(|path| fs::canonicalize(path).ok());
-            place.zip(searched).is_some_and(|(place, searched)| place.starts_with(searched))
-        };
-        if let Some(searched) = arguments.bags.iter().find(within) {
-            let (folder, searched) = (folder.display(), searched.display());
-            return Err(Failure::BadInput(format!(
-                "{folder} lies in {searched}: outputs go where no bags are looked for"
-            )));
-        }
-        fs::create_dir_all(folder).map_err(named)?;
-    }
-    remove_abandoned(folder).map_err(Failure::bad_input)?;
-    let file = |input: &Input| if is_file { output.clone() } else { folder.join(format!("{}.mcap", input.name)) };
-    let outputs: Vec<PathBuf> = inputs.iter().map(file).collect();
-    let taken = inputs.iter().flat_map(|input| input.files.iter().map(|file| &file.path).chain([&input.path]));
-    spare(taken.map(PathBuf::as_path), outputs.iter().map(PathBuf::as_path))?;
-    Ok(outputs.into_iter().map(Some).collect())
-}
-
 fn task(arguments: &Arguments) -> Result<Task, Failure> {
-    let grouping = match (arguments.window, arguments.gap) {
-        (Some(length_ns), _) => Grouping::Window { length_ns },
-        (None, Some(longest_ns)) => Grouping::Gap { longest_ns },
-        (None, None) => Grouping::Whole,
-    };
-    let selection =
-        |topic: Option<&String>| Selection { topic: topic.cloned(), frames: arguments.frames.clone(), grouping };
-    let selections: Vec<Selection> = match arguments.topic.as_slice() {
-        [] => vec![selection(None)],
-        topics => {
-            let mut seen = HashSet::new();
-            topics.iter().filter(|topic| seen.insert(*topic)).map(|topic| selection(Some(topic))).collect()
-        }
-    };
-    let robot = arguments.robot.as_deref().map(|name| load_robot(name, arguments.limits.as_deref())).transpose()?;
-    let options = Options { topology: arguments.topology.into(), ..Options::default() };
-    let (weight, score, minimum_verdict) =
-        (arguments.metres_per_radian, arguments.score, arguments.minimum_verdict.into());
-    let version = env!("CARGO_PKG_VERSION");
-    let of_robot = robot.as_ref().map(|robot| {
-        let mut hasher = DefaultHasher::new();
-        format!("{robot:?}").hash(&mut hasher);
-        format!("{} {:016x}", robot.name, hasher.finish())
-    });
-    let settings = format!("{version} {selections:?} {options:?} {weight:?} {score} {minimum_verdict:?} {of_robot:?}");
-    Ok(Task { selections, options, weight, score, robot, minimum_verdict, settings })
+    let robot = arguments.robot.as_deref().map(|name| load_robot(name, arguments.limits.as_deref()));
+    Ok(Task {
+        topics: arguments.topic.clone(),
+        frames: arguments.frames.clone(),
+        grouping: match (arguments.window, arguments.gap) {
+            (Some(length_ns), _) => Grouping::Window { length_ns },
+            (None, Some(longest_ns)) => Grouping::Gap { longest_ns },
+            (None, None) => Grouping::Whole,
+        },
+        topology: arguments.topology.into(),
+        weight: arguments.metres_per_radian,
+        score: arguments.score,
+        robot: robot.transpose().map_err(Failure::bad_input)?,
+        minimum_verdict: arguments.minimum_verdict.into(),
+    })
 }
 
 /// Bytes of the bags that are done, on a terminal only.

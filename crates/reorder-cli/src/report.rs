@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use ::report::{DrawingLibrary, Points, Report, ReportError, Simulation, page};
+use bag_replay::{load_robot, spare};
 use clap::Args;
 use planner::manipulator::Robot;
 use planner::reorder::{EdgeFigures, Options, Ordering, Weight, order_poses};
@@ -13,8 +14,8 @@ use planner::{Config, Plan, Refusal, Request, interpolate, plan};
 use crate::ask::Ask;
 use crate::failure::Failure;
 use crate::order::{Topology, weight};
-use crate::output::{Pending, spare};
-use crate::plan::{MinimumVerdict, load_robot};
+use crate::output::Pending;
+use crate::plan::MinimumVerdict;
 use crate::source::{Manifold, Source};
 
 #[derive(Args)]
@@ -69,11 +70,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let files = [&arguments.limits, &arguments.simulation, &arguments.drawing_library].into_iter();
     let urdf = arguments.robot.as_deref().map(Path::new);
     let inputs = files.filter_map(|path| path.as_deref()).chain(urdf).chain([arguments.source.input.as_path()]);
-    spare(inputs, [arguments.output.as_path()].into_iter())?;
+    spare(inputs, [arguments.output.as_path()].into_iter()).map_err(Failure::bad_input)?;
     let library = library(arguments.drawing_library.as_deref())?;
     let simulation = arguments.simulation.as_deref().map(simulation).transpose()?;
     let found = match &arguments.robot {
-        Some(robot) => planned(arguments, load_robot(robot, arguments.limits.as_deref())?)?,
+        Some(robot) => {
+            let robot = load_robot(robot, arguments.limits.as_deref()).map_err(Failure::bad_input)?;
+            planned(arguments, robot)?
+        }
         None => ordered(arguments)?,
     };
     let outcome = found.planned.as_ref().map(|(_, outcome)| outcome.as_ref());

@@ -17,6 +17,7 @@ mod score;
 mod setup;
 mod soak;
 mod test;
+mod wheel;
 
 use clap::Parser;
 use std::path::PathBuf;
@@ -35,7 +36,8 @@ enum Chore {
     /// Run a long test at full length and print its figures
     Soak {
         name: soak::Soak,
-        /// How many random cases (else 1000), seconds (fuzz-*, else 1000; link, else 60), or minutes (load and hil, else 10)
+        /// How many random cases (else 1000), seconds (fuzz-*, else 1000; link, else 60), minutes (load and hil, else 10), or bags (fleet, else
+        /// 200)
         amount: Option<u32>,
     },
     /// Shuffle recordings whose order is known, have `reorder order` put them right, and print how many it did
@@ -48,7 +50,7 @@ enum Chore {
         #[arg(long, default_value_t = 7)]
         seed: u64,
     },
-    /// Measure an area (bags, geometry, ordering, manipulator, node) beside the libraries that others would use, and print the table
+    /// Measure an area (bags, geometry, ordering, manipulator, node, python) beside the libraries that others would use, and print the table
     Bench { area: String },
     /// Set up, build, and put the ROS package into an ament prefix, for `ros2 run` and `ros2 launch`
     Install {
@@ -68,6 +70,15 @@ enum Chore {
     Lint,
     /// Set up, then run every test there is
     Test,
+    /// Build the wheel of the Python package
+    Wheel {
+        /// Where it goes; what is in the folder is removed
+        #[arg(long, default_value = "target/wheel/release")]
+        out: PathBuf,
+        /// Build it as for tests, install it into an empty environment without Rust, and run its tests there
+        #[arg(long, conflicts_with = "out")]
+        test: bool,
+    },
 }
 
 fn main() -> ExitCode {
@@ -83,6 +94,8 @@ fn main() -> ExitCode {
         Chore::Launch { file, arguments, no_build } => launch::run(&layout, &file, &arguments, !no_build),
         Chore::Lint => test::lint(&layout),
         Chore::Test => test::test(&layout),
+        Chore::Wheel { test: true, .. } => test::python_package(&layout),
+        Chore::Wheel { out, .. } => wheel::run(&layout, &out),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,7 +2,7 @@
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
-use crate::{browser, interfaces, mujoco, python, ros};
+use crate::{browser, interfaces, mujoco, python, ros, wheel};
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,10 +23,12 @@ pub(crate) fn run(layout: &Layout) -> Outcome {
     take(layout, steps(layout)?)
 }
 
-/// Brings all in `.deps` up to date: also what draws the report's page, and what tests it.
+/// Brings all in `.deps` up to date: also what draws the report's page, what builds the Python package, and what
+/// tests both.
 pub(crate) fn run_for_tests(layout: &Layout) -> Outcome {
     let mut steps = steps(layout)?;
     steps.push(browser::step(layout, &python::step(layout).recipe));
+    steps.push(wheel::step(layout));
     take(layout, steps)
 }
 

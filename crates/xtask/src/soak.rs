@@ -9,6 +9,7 @@ use clap::ValueEnum;
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
 use crate::hil;
+use crate::wheel;
 
 /// What can be run at length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -47,6 +48,8 @@ pub(crate) enum Soak {
     Load,
     /// An emulated ViperX on a bus that damages one packet in a hundred: faults, jumps, tracking; the number is how many minutes
     Hil,
+    /// So many bags (else 200) on a Ray cluster of two nodes on this machine, while ten workers are killed: every result is there, none twice
+    Fleet,
     /// The node behind a link of 200 ms and 5 % loss each way, steady for so many seconds, then cut twice
     Link,
 }
@@ -58,6 +61,7 @@ pub(crate) fn run(layout: &Layout, name: Soak, amount: Option<u32>) -> Outcome {
     match name {
         Soak::Load => ros::load(layout, amount.unwrap_or(10)),
         Soak::Hil => hil::soak(layout, amount.unwrap_or(10)),
+        Soak::Fleet => wheel::soak(layout, amount.unwrap_or(200)),
         Soak::Link => ros::link(layout, amount.unwrap_or(60)),
         Soak::Plans => run_test(layout, "planner", "random_plans", cases),
         Soak::Handovers => run_test(layout, "planner", "handover", cases),

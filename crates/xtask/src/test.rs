@@ -2,7 +2,8 @@
 
 use crate::env::Layout;
 use crate::failure::{Failure, Outcome};
-use crate::setup;
+use crate::process::build_executables;
+use crate::{setup, wheel};
 use std::process::Command;
 
 pub(crate) fn lint(layout: &Layout) -> Outcome {
@@ -13,11 +14,26 @@ pub(crate) fn lint(layout: &Layout) -> Outcome {
 
 pub(crate) fn test(layout: &Layout) -> Outcome {
     setup::run_for_tests(layout)?;
-    // Examples are linted, and tests call what they do.
-    let tested = ["--workspace", "--lib", "--bins", "--tests"];
+    // Libraries, programs and tests, but not what has no tests in Rust: examples, of which tests call what they do, and the Python package.
+    let tested = ["--workspace", "--tests"];
     let runner: &[&str] = if has_nextest(layout) { &["nextest", "run"] } else { &["test"] };
     run(layout.cargo().args(runner).args(tested))?;
-    run(layout.cargo().args(["test", "--workspace", "--doc"]))
+    run(layout.cargo().args(["test", "--workspace", "--doc"]))?;
+    of_python(layout)
+}
+
+/// The tests of the Python package alone.
+pub(crate) fn python_package(layout: &Layout) -> Outcome {
+    setup::take(layout, vec![wheel::step(layout)])?;
+    of_python(layout)
+}
+
+/// They compare with the command `reorder`, which the tests of its crate have built.
+fn of_python(layout: &Layout) -> Outcome {
+    let built = build_executables(layout, &["test", "--no-run", "--workspace", "--test", "cli"])?;
+    let reorder = built.iter().find(|path| path.file_stem().is_some_and(|name| name == "reorder"));
+    let reorder = reorder.ok_or_else(|| Failure::step("cargo test", "it built no reorder".to_owned()))?;
+    wheel::test(layout, reorder)
 }
 
 fn has_nextest(layout: &Layout) -> bool {

@@ -14,6 +14,7 @@ const MAY_DEPEND_ON: &[(&str, &[&str])] = &[
     ("manipulator", &["se3-geom"]),
     ("pose-bag", &["se3-geom"]),
     ("planner", &["se3-geom", "reorder", "manipulator", "pose-bag"]),
+    ("bag-replay", &["planner"]),
     ("report", &["planner"]),
     ("mujoco-sim", &["planner"]),
     ("arm-node", &["planner"]),
@@ -22,7 +23,8 @@ const MAY_DEPEND_ON: &[(&str, &[&str])] = &[
     ("dynamixel-hil", &["planner", "mujoco-sim", "dynamixel-emulator"]),
     ("dynamixel-arm", &["planner", "dynamixel-hil", "arm-node"]),
     ("reorder-node", &["planner"]),
-    ("reorder-cli", &["planner", "pose-bag", "report"]),
+    ("reorder-cli", &["planner", "pose-bag", "bag-replay", "report"]),
+    ("reorder-py", &["bag-replay"]),
     ("xtask", &[]),
     ("end-to-end", ALL),
 ];
@@ -74,6 +76,29 @@ fn default_members_need_rust_alone() {
         assert_eq!(needs(&member.name), Vec::<&str>::new(), "{} is a default member", member.name);
     }
     assert_eq!(needs("reorder-node"), ["r2r"], "the search itself finds nothing");
+}
+
+/// The wheel is built alone, with the features that its own dependencies ask for: where these are others than in a build of the whole
+/// workspace, all that depends on them is compiled once more, which takes many minutes.
+#[test]
+fn the_wheel_shares_its_build_with_the_tests() {
+    let of_workspace = packages_with_features(&["--workspace", "--edges", "normal,build,dev"]);
+    let of_wheel =
+        packages_with_features(&["--package", "reorder-py", "--features", "wheel", "--edges", "normal,build"]);
+    assert!(of_wheel.iter().any(|line| line.starts_with("nalgebra ")), "{of_wheel:?}");
+    // These know whether an interpreter is linked.
+    let is_python = |line: &&String| ["pyo3", "reorder-py "].iter().any(|name| line.starts_with(name));
+    let others: Vec<_> = of_wheel.difference(&of_workspace).filter(|line| !is_python(line)).collect();
+    assert!(others.is_empty(), "ask for the workspace's features of these under [features] of reorder-py: {others:#?}");
+}
+
+fn packages_with_features(arguments: &[&str]) -> BTreeSet<String> {
+    let mut cargo = std::process::Command::new(env!("CARGO"));
+    cargo.args(["tree", "--offline", "--locked", "--prefix", "none", "--format", "{p} {f}", "--manifest-path"]);
+    let tree = cargo.arg("../../Cargo.toml").args(arguments).output().expect("cargo tree");
+    assert!(tree.status.success(), "{}", String::from_utf8_lossy(&tree.stderr));
+    let text = String::from_utf8(tree.stdout).expect("text");
+    text.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
 }
 
 /// Cargo.lock is the resolved graph, and reading it needs no network.

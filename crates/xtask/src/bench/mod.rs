@@ -12,6 +12,7 @@ mod node;
 mod ordering;
 mod peers;
 mod programs;
+mod python;
 
 use std::fs;
 
@@ -22,12 +23,13 @@ use figure::Figure;
 type Measure = fn(&Layout) -> Outcome<Vec<Figure>>;
 
 /// What can be measured. A new area is a file and a line here.
-const AREAS: [(&str, Measure); 5] = [
+const AREAS: [(&str, Measure); 6] = [
     ("bags", bags::measure),
     ("geometry", geometry::measure),
     ("manipulator", manipulator::measure),
     ("node", node::measure),
     ("ordering", ordering::measure),
+    ("python", python::measure),
 ];
 
 /// Measures an area, writes `target/bench/AREA.json` and prints it as a table. A bound that is missed is a figure, not a failure.
@@ -56,7 +58,7 @@ mod tests {
         let failure = run(&Layout::at(folder.path()), "astrology").unwrap_err().to_string();
         assert_eq!(
             failure,
-            "there is no benchmark of astrology: choose one of bags, geometry, manipulator, node, ordering"
+            "there is no benchmark of astrology: choose one of bags, geometry, manipulator, node, ordering, python"
         );
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing was made for it");
     }

@@ -6,34 +6,41 @@ use std::time::UNIX_EPOCH;
 
 use serde::{Deserialize, Serialize};
 
-use crate::failure::Failure;
+use crate::error::ReplayError;
 
 /// Folders in folders that are looked into.
 const MAX_DEPTH: usize = 8;
 
 /// A bag, and what its output shall be called.
 #[derive(Debug, Clone)]
-pub(crate) struct Input {
-    pub(crate) path: PathBuf,
-    pub(crate) name: String,
-    pub(crate) files: Vec<InputFile>,
+pub struct Input {
+    /// Where it lies: a file, or the folder of a rosbag2 bag.
+    pub path: PathBuf,
+    /// What its output is called, without the ending.
+    pub name: String,
+    /// What it consists of, by name.
+    pub files: Vec<InputFile>,
 }
 
 /// What tells a file from what it was before.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct InputFile {
-    pub(crate) path: PathBuf,
-    pub(crate) bytes: u64,
+pub struct InputFile {
+    /// Where it lies.
+    pub path: PathBuf,
+    /// Its size.
+    pub bytes: u64,
     /// When it was last changed, in ns since the epoch.
-    pub(crate) changed_ns: u64,
+    pub changed_ns: u64,
 }
 
 impl Input {
-    pub(crate) fn bytes(&self) -> u64 {
+    /// Its size on the disk.
+    pub fn bytes(&self) -> u64 {
         self.files.iter().map(|file| file.bytes).sum()
     }
 
-    fn new(path: PathBuf, name: String) -> Self {
+    /// The bag at `path` as it is now.
+    pub fn new(path: PathBuf, name: String) -> Self {
         let inside =
             |folder: &Path| fs::read_dir(folder).map(|entries| entries.flatten().map(|entry| entry.path()).collect());
         let mut paths: Vec<PathBuf> =
@@ -51,24 +58,27 @@ impl Input {
 }
 
 /// The bags among the paths, and those in folders that are none themselves, by name. Names are unique.
-pub(crate) fn find(paths: &[PathBuf]) -> Result<Vec<Input>, Failure> {
+///
+/// # Errors
+/// [`ReplayError::NoBag`], [`ReplayError::SameName`], and [`ReplayError::Io`] for what cannot be looked at.
+pub fn find(paths: &[PathBuf]) -> Result<Vec<Input>, ReplayError> {
     let mut found = Vec::new();
     for path in paths {
         let before = found.len();
         if path.is_dir() && !is_bag_folder(path) {
             collect(path, "", MAX_DEPTH, &mut found)?;
             if found.len() == before {
-                return Err(Failure::BadInput(format!("{}: there is no bag in this folder", path.display())));
+                return Err(ReplayError::NoBag { folder: path.clone() });
             }
         } else {
-            let absolute = fs::canonicalize(path).map_err(|error| named(path, &error))?;
+            let absolute = fs::canonicalize(path).map_err(ReplayError::io(path))?;
             found.push(Input::new(path.clone(), stem(&absolute)));
         }
     }
     found.sort_by(|a, b| a.name.cmp(&b.name));
     if let Some(pair) = found.windows(2).find(|pair| pair[0].name == pair[1].name) {
-        let (name, [a, b]) = (&pair[0].name, [&pair[0].path, &pair[1].path].map(|path| path.display()));
-        return Err(Failure::BadInput(format!("{a} and {b} would both be written as {name}.mcap")));
+        let bags = [&pair[0].path, &pair[1].path].map(PathBuf::clone);
+        return Err(ReplayError::SameName { bags, name: pair[0].name.clone() });
     }
     Ok(found)
 }
@@ -77,11 +87,11 @@ fn is_bag_folder(folder: &Path) -> bool {
     folder.join("metadata.yaml").exists()
 }
 
-fn collect(folder: &Path, prefix: &str, depth: usize, found: &mut Vec<Input>) -> Result<(), Failure> {
+fn collect(folder: &Path, prefix: &str, depth: usize, found: &mut Vec<Input>) -> Result<(), ReplayError> {
     let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    for entry in entries.map_err(|error| named(folder, &error))? {
+    for entry in entries.map_err(ReplayError::io(folder))? {
         let path = entry.path();
-        let kind = entry.file_type().map_err(|error| named(&path, &error))?;
+        let kind = entry.file_type().map_err(ReplayError::io(&path))?;
         let name = format!("{prefix}{}", stem(&path));
         if entry.file_name().as_encoded_bytes().starts_with(b".") {
             continue;
@@ -101,8 +111,4 @@ fn stem(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let bare = name.strip_suffix(".mcap").or_else(|| name.strip_suffix(".db3")).unwrap_or(&name);
     bare.to_owned()
-}
-
-fn named(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::BadInput(format!("{}: {error}", path.display()))
 }

@@ -1,66 +1,107 @@
 //! What came of each bag, as JSON and as a table.
 
+use planner::Plan;
 use planner::reorder::{Topology, Verdict};
 use serde::{Deserialize, Serialize};
 
-use crate::replay::score::Score;
+use crate::score::Score;
 
 /// What came of a bag.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct BagSummary {
-    pub(crate) bag: String,
-    pub(crate) status: Status,
+pub struct BagSummary {
+    /// The bag, as it was named or found.
+    pub bag: String,
+    /// Whether it was replayed, and when.
+    pub status: Status,
     /// Why nothing came of it.
-    pub(crate) error: Option<String>,
+    pub error: Option<String>,
     /// What of it could not be read.
-    pub(crate) lost: Vec<String>,
-    pub(crate) output: Option<String>,
-    pub(crate) sets: Vec<SetSummary>,
+    pub lost: Vec<String>,
+    /// Where its output lies, where there is one.
+    pub output: Option<String>,
+    /// What came of every set of poses in it.
+    pub sets: Vec<SetSummary>,
 }
 
+/// Whether a bag was replayed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Status {
+pub enum Status {
     /// Replayed now.
     Done,
     /// Replayed by an earlier run.
     Kept,
+    /// It could not be read or written.
     Broken,
 }
 
 /// What came of a set of poses.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct SetSummary {
-    pub(crate) topic: String,
+pub struct SetSummary {
+    /// Topic of the set.
+    pub topic: String,
     /// Message on the topic, from 0, where the set is one.
-    pub(crate) message: Option<usize>,
-    pub(crate) n: usize,
+    pub message: Option<usize>,
+    /// How many poses it has.
+    pub n: usize,
     /// Why it has no order.
-    pub(crate) error: Option<String>,
-    pub(crate) order: Vec<usize>,
-    pub(crate) topology: Option<Topology>,
-    pub(crate) verdict: Option<Verdict>,
-    pub(crate) doubts: usize,
-    pub(crate) score: Option<Score>,
-    pub(crate) trajectory: Option<TrajectorySummary>,
+    pub error: Option<String>,
+    /// Rows of the set in recovered order.
+    pub order: Vec<usize>,
+    /// Open or closed.
+    pub topology: Option<Topology>,
+    /// How far the order may be trusted.
+    pub verdict: Option<Verdict>,
+    /// How many reasons there are not to trust it.
+    pub doubts: usize,
+    /// How near it comes to the recorded order, where that was asked for.
+    pub score: Option<Score>,
+    /// The planned trajectory in figures.
+    pub trajectory: Option<TrajectorySummary>,
     /// Why there is no trajectory, or no curve.
-    pub(crate) refused: Option<String>,
+    pub refused: Option<String>,
 }
 
+/// A planned trajectory in figures.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct TrajectorySummary {
-    pub(crate) points: usize,
-    pub(crate) duration_s: f64,
+pub struct TrajectorySummary {
+    /// Number of its points.
+    pub points: usize,
+    /// Duration in s.
+    pub duration_s: f64,
+    /// Peak over limit, the greatest of all joints: velocity, acceleration and jerk.
+    pub max_ratio: [f64; 3],
+    /// Least distance of any joint to a position limit, in rad (m for prismatic joints).
+    pub position_margin: f64,
+    /// Greatest distance of the planned tool from a pose, in m.
+    pub pose_error_max_m: f64,
+    /// The same as an angle, in rad.
+    pub pose_error_max_rad: f64,
+}
+
+impl TrajectorySummary {
+    pub(crate) fn of(plan: &Plan) -> Self {
+        let ratio = &plan.audit.max_ratio;
+        Self {
+            points: plan.trajectory.points.len(),
+            duration_s: plan.trajectory.duration_s(),
+            max_ratio: [ratio.velocity, ratio.acceleration, ratio.jerk],
+            position_margin: plan.audit.position_margin,
+            pose_error_max_m: plan.pose_error_max_m,
+            pose_error_max_rad: plan.pose_error_max_rad,
+        }
+    }
 }
 
 impl BagSummary {
-    pub(crate) fn broken(bag: String, error: String) -> Self {
+    /// Nothing came of it, for this reason.
+    pub fn broken(bag: String, error: String) -> Self {
         Self { bag, status: Status::Broken, error: Some(error), lost: Vec::new(), output: None, sets: Vec::new() }
     }
 }
 
 /// A line for every topic of every bag.
-pub(crate) fn table(bags: &[BagSummary]) -> String {
+pub fn table(bags: &[BagSummary]) -> String {
     let mut rows = vec![HEADER.map(str::to_owned)];
     for bag in bags {
         if bag.sets.is_empty() {

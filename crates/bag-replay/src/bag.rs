@@ -3,35 +3,22 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use planner::manipulator::Robot;
 use planner::pose_bag::msg::{
     Header, JointState, MarkerArray, Path as PathMessage, PoseArray, PoseStamped, Text, Time,
 };
-use planner::pose_bag::{BagReader, BagWriter, OfferedQos, PoseSet, Selection, msg, recover_poses};
-use planner::reorder::{Options, Ordering, Verdict, Weight, order_weighted};
+use planner::pose_bag::{BagReader, BagWriter, OfferedQos, PoseSet, msg, recover_poses};
+use planner::reorder::{Ordering, order_weighted};
 use planner::se3_geom::{Pose, Se3};
 use planner::{Config, Drawn, Plan, Request, interpolate, path_along, plan, trajectory_message};
 use serde::{Deserialize, Serialize};
 
-use crate::replay::inputs::{Input, InputFile};
-use crate::replay::score::Score;
-use crate::replay::summary::{BagSummary, SetSummary, Status, TrajectorySummary};
+use crate::inputs::{Input, InputFile};
+use crate::score::Score;
+use crate::summary::{BagSummary, SetSummary, Status, TrajectorySummary};
+use crate::task::Task;
 
 /// The topic on which an output says what it was made of and how.
 const REPORT: &str = "/reorder/report";
-
-/// How bags are replayed.
-pub(crate) struct Task {
-    /// One for each topic.
-    pub(crate) selections: Vec<Selection>,
-    pub(crate) options: Options,
-    pub(crate) weight: Weight,
-    pub(crate) score: bool,
-    pub(crate) robot: Option<Robot>,
-    pub(crate) minimum_verdict: Verdict,
-    /// All of the above, and the program's version, in words.
-    pub(crate) settings: String,
-}
 
 /// What an output holds about itself.
 #[derive(Serialize, Deserialize)]
@@ -52,7 +39,7 @@ struct Replayed {
 
 /// Replays a bag into `output`; one that an earlier run made of the same bag in the same way is left as it is. `advance` is told
 /// which part of the work is done, from 0 to 1.
-pub(crate) fn replay(input: &Input, output: Option<&Path>, task: &Task, advance: &dyn Fn(f64)) -> BagSummary {
+pub fn replay(input: &Input, output: Option<&Path>, task: &Task, advance: &dyn Fn(f64)) -> BagSummary {
     if let Some(kept) = output.and_then(|output| earlier(input, output, task)) {
         return kept;
     }
@@ -76,7 +63,7 @@ fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
         Ok(())
     });
     let report = report.filter(|_| losses.is_ok_and(|losses| losses.is_empty()))?;
-    let is_same = report.settings == task.settings && report.input == input.files;
+    let is_same = report.settings == task.settings() && report.input == input.files;
     is_same.then(|| BagSummary {
         bag: input.path.display().to_string(),
         output: Some(output.display().to_string()),
@@ -88,8 +75,8 @@ fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
 fn replay_anew(input: &Input, output: Option<&Path>, task: &Task, advance: &dyn Fn(f64)) -> Result<BagSummary, String> {
     let mut lost = Vec::new();
     let mut sets = Vec::new();
-    for selection in &task.selections {
-        let (found, losses) = recover_poses(&input.path, selection).map_err(|error| error.to_string())?;
+    for selection in task.selections() {
+        let (found, losses) = recover_poses(&input.path, &selection).map_err(|error| error.to_string())?;
         sets.extend(found);
         // Every pass over a bag meets the same damage.
         lost = losses.iter().map(ToString::to_string).collect();
@@ -132,7 +119,7 @@ fn replay_set(set: PoseSet, task: &Task) -> Replayed {
         refused: None,
     };
     // Stamps play no part in it.
-    let ordering = match order_weighted::<Se3>(&set.poses, task.weight, &task.options) {
+    let ordering = match order_weighted::<Se3>(&set.poses, task.weight, &task.options()) {
         Ok(ordering) => ordering,
         Err(error) => {
             summary.error = Some(error.to_string());
@@ -148,7 +135,7 @@ fn replay_set(set: PoseSet, task: &Task) -> Replayed {
     let plan = task.robot.as_ref().map(|robot| {
         let config = Config {
             metres_per_radian,
-            topology: task.options.topology,
+            topology: task.topology,
             minimum_verdict: task.minimum_verdict,
             ..Config::default()
         };
@@ -157,8 +144,7 @@ fn replay_set(set: PoseSet, task: &Task) -> Replayed {
     });
     let (plan, curve) = match plan {
         Some(Ok(plan)) => {
-            let (points, duration_s) = (plan.trajectory.points.len(), plan.trajectory.duration_s());
-            summary.trajectory = Some(TrajectorySummary { points, duration_s });
+            summary.trajectory = Some(TrajectorySummary::of(&plan));
             let curve = plan.path();
             (Some(plan), Ok(curve))
         }
@@ -183,13 +169,13 @@ fn write(
     summary: &BagSummary,
 ) -> Result<(), planner::pose_bag::BagError> {
     let mut bag = BagWriter::create(output)?;
-    let mut end_ns = 0;
+    let (mut end_ns, selections) = (0, task.selections().len());
     for one in replayed {
         // Several topics must not mingle; one has the names that the node gives.
-        let of = if task.selections.len() > 1 { one.summary.topic.as_str() } else { "" };
+        let of = if selections > 1 { one.summary.topic.as_str() } else { "" };
         end_ns = end_ns.max(write_set(&mut bag, of, one)?);
     }
-    let report = Report { settings: task.settings.clone(), input: input.files.clone(), summary: summary.clone() };
+    let report = Report { settings: task.settings(), input: input.files.clone(), summary: summary.clone() };
     let data = serde_json::to_string(&report).unwrap_or_default();
     bag.add_topic::<Text>(REPORT, OfferedQos::TransientLocal)?;
     bag.write(REPORT, end_ns, &Text { data })?;

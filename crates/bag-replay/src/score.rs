@@ -6,22 +6,22 @@ use planner::reorder::{Ordering, Topology};
 use planner::se3_geom::{Pose, xyzw_from_rotation};
 use serde::{Deserialize, Serialize};
 
-/// Equal poses count as one.
+/// How near a recovered order comes to the recorded one. Equal poses count as one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Score {
+pub struct Score {
     /// Share of the recorded consecutive pairs that are neighbours in the recovered order.
-    pub(crate) adjacency: f64,
+    pub adjacency: f64,
     /// Whether all of them are.
-    pub(crate) exact: bool,
+    pub exact: bool,
     /// Kendall's τ of the two orders, the recovered one turned round, and a closed one begun, so that it is greatest.
-    pub(crate) kendall_tau: f64,
+    pub kendall_tau: f64,
     /// The first recorded pair that the recovered order does not follow, as rows of the set.
-    pub(crate) first_difference: Option<[usize; 2]>,
+    pub first_difference: Option<[usize; 2]>,
 }
 
 impl Score {
     /// Recorded is the order of the stamps, and of the rows where there are none.
-    pub(crate) fn of(poses: &[Pose], stamps_ns: Option<&[i64]>, ordering: &Ordering) -> Self {
+    pub fn of(poses: &[Pose], stamps_ns: Option<&[i64]>, ordering: &Ordering) -> Self {
         let mut recorded: Vec<usize> = (0..poses.len()).collect();
         if let Some(stamps_ns) = stamps_ns {
             recorded.sort_by_key(|&row| stamps_ns[row]);
