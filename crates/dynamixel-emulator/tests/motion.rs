@@ -225,3 +225,21 @@ fn torque_that_comes_on_moves_nothing() {
     assert_eq!(bench.item(1, item::TORQUE_ENABLE), 1);
     assert!((position(&bench) - 1500).abs() <= AT_REST);
 }
+
+/// The e-manual's note on Operating Mode(11).
+#[test]
+fn a_new_operating_mode_has_the_gains_and_the_profile_of_the_factory() {
+    let settings = ServoSettings::new(1, Model::Xm540W270).with(item::PWM_LIMIT, 700).with(item::CURRENT_LIMIT, 900);
+    let mut bench = Bench::new(vec![settings]);
+    let set: Vec<(Item, i32)> = [76, 78, 80, 82, 84, 88, 90].map(|address| (Item { address, size: 2 }, 77)).to_vec();
+    let set =
+        [set, vec![(item::PROFILE_ACCELERATION, 5), (item::PROFILE_VELOCITY, 50), (item::GOAL_PWM, 300)]].concat();
+    let initial = [1920, 100, 0, 0, 800, 0, 0, 0, 0, 700];
+    let values = |bench: &Bench| set.iter().map(|(item, _)| bench.item(1, *item)).collect::<Vec<_>>();
+    set.iter().for_each(|(item, value)| bench.write(1, *item, *value));
+    bench.write(1, item::GOAL_CURRENT, 100);
+    bench.write(1, item::OPERATING_MODE, 3);
+    assert_eq!(values(&bench), set.iter().map(|(_, value)| *value).collect::<Vec<_>>(), "it was in that mode");
+    bench.write(1, item::OPERATING_MODE, 5);
+    assert_eq!((values(&bench), bench.item(1, item::GOAL_CURRENT)), (initial.to_vec(), 900));
+}

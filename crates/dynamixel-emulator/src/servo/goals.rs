@@ -2,7 +2,7 @@
 
 use super::profile::{Profile, Shape};
 use super::{Ramp, Servo};
-use crate::item;
+use crate::item::{self, Item};
 use crate::memory::{Allowed, POSITION_MODE};
 use crate::units::{ACCELERATION_RAD_S2, PULSE_RAD, VELOCITY_RAD_S};
 
@@ -14,6 +14,12 @@ const TORQUE_BY_GOAL: i32 = 8;
 /// Units of the table in pulses.
 pub(super) const VELOCITY_PULSES_S: f64 = VELOCITY_RAD_S / PULSE_RAD;
 const ACCELERATION_PULSES_S2: f64 = ACCELERATION_RAD_S2 / PULSE_RAD;
+
+/// Whether an item is a gain or part of the profile: what a new operating mode has its initial values of.
+pub(super) fn is_tuning(item: Item) -> bool {
+    let gains = item::VELOCITY_I_GAIN.address..=item::FEEDFORWARD_1ST_GAIN.address;
+    gains.contains(&item.address) || [item::PROFILE_ACCELERATION, item::PROFILE_VELOCITY].contains(&item)
+}
 
 impl Servo {
     /// Executes a write that the rules allow.
@@ -34,6 +40,7 @@ impl Servo {
             }
             self.set_goals_aside();
             if self.item(item::OPERATING_MODE) != mode {
+                self.memory.reset(is_tuning);
                 self.set_bounds();
             }
             // Goals of the same packet are newer than what has just replaced them.
@@ -75,7 +82,7 @@ impl Servo {
         }
     }
 
-    /// Goals that only bound what the controller does have their limits in a new mode.
+    /// Goals that only bound what the controller does are their limits.
     pub(super) fn set_bounds(&mut self) {
         for (of_mode, goal, limit) in
             [(0, item::GOAL_CURRENT, item::CURRENT_LIMIT), (16, item::GOAL_PWM, item::PWM_LIMIT)]

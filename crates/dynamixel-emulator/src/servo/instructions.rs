@@ -1,6 +1,7 @@
 //! What a servo does on an instruction that is for it alone or for all.
 
 use super::Servo;
+use super::goals::is_tuning;
 use crate::item::{self, Item};
 use crate::packet::{Packet, Refusal, instruction};
 use crate::table::RAM;
@@ -26,10 +27,8 @@ const WITH_FAST_READS: i32 = 45;
 
 /// Whether an item is part of a backup.
 pub(super) fn is_backed_up(item: Item) -> bool {
-    let is_gain = (item::VELOCITY_I_GAIN.address..=item::FEEDFORWARD_1ST_GAIN.address).contains(&item.address);
-    let is_profile = [item::PROFILE_ACCELERATION, item::PROFILE_VELOCITY].contains(&item);
     let is_indirect_address = (168..224).contains(&item.address) || (578..634).contains(&item.address);
-    item.address < RAM || is_gain || is_profile || is_indirect_address
+    item.address < RAM || is_tuning(item) || is_indirect_address
 }
 
 impl Servo {
