@@ -74,6 +74,20 @@ fn a_secondary_id_is_obeyed_in_silence() {
     assert_eq!(bench.item(1, item::HOMING_OFFSET), 0, "the EEPROM is not written by that name");
 }
 
+/// The factory's Secondary ID(12) is 255, which is nobody's.
+#[test]
+fn an_id_that_no_servo_can_have_is_not_obeyed() {
+    let mut bench = Bench::with_ids(&[1]);
+    for id in [253, 254, 255] {
+        bench.write(1, item::SECONDARY_ID, i32::from(id));
+        bench.send(BROADCAST_ID, instruction::SYNC_WRITE, &[65, 0, 1, 0, id, 1]);
+        bench.send(BROADCAST_ID, instruction::BULK_WRITE, &[id, 65, 0, 1, 0, 1]);
+        assert_eq!(bench.item(1, item::LED), 0, "{id}");
+    }
+    bench.send(BROADCAST_ID, instruction::SYNC_WRITE, &[65, 0, 1, 0, 1, 1]);
+    assert_eq!(bench.item(1, item::LED), 1);
+}
+
 #[test]
 fn the_status_return_level_is_kept() {
     let mut bench = Bench::with_ids(&[1]);

@@ -2,7 +2,7 @@
 
 use super::Bus;
 use crate::faults::Connection;
-use crate::packet::{BROADCAST_ID, HEADER, Heard, Packet, Refusal, crc16, instruction};
+use crate::packet::{BROADCAST_ID, HEADER, Heard, MAX_ID, Packet, Refusal, crc16, instruction};
 use crate::servo::{Addressed, Servo};
 
 /// Servos of other rates than the host's by more than this hear noise: beyond it the tenth bit is sampled in its neighbour.
@@ -65,17 +65,18 @@ impl Bus {
     fn execute(&mut self, packet: &Packet) -> Vec<Slot> {
         let mut slot = Slot { delay_s: f64::INFINITY, answers: Vec::new() };
         for (id, servo) in self.listeners() {
-            if id == packet.id {
+            let Some(addressed) = addressed(id, servo, packet.id) else { continue };
+            if addressed == Addressed::Own {
                 // The answer comes from who it was before, after the delay that it had before.
                 let delay_s = servo.return_delay_s();
                 let answers = servo.answers(packet.instruction);
-                let result = servo.execute(packet, Addressed::Own);
+                let result = servo.execute(packet, addressed);
                 if answers {
                     slot.delay_s = slot.delay_s.min(delay_s);
                     slot.answers.push(servo.status(id, result).encode());
                 }
-            } else if i32::from(packet.id) == servo.item(crate::item::SECONDARY_ID) {
-                drop(servo.execute(packet, Addressed::Secondary));
+            } else {
+                drop(servo.execute(packet, addressed));
             }
         }
         vec![slot]
@@ -143,15 +144,22 @@ impl Bus {
     fn write_many(&mut self, writes: Vec<(u8, usize, &[u8])>) -> Vec<Slot> {
         for (id, address, data) in writes {
             for (own, servo) in self.listeners() {
-                if own == id {
-                    let _ = servo.write(address, data, Addressed::All);
-                } else if i32::from(id) == servo.item(crate::item::SECONDARY_ID) {
-                    let _ = servo.write(address, data, Addressed::Secondary);
+                if let Some(addressed) = addressed(own, servo, id) {
+                    let _ = servo.write(address, data, addressed);
                 }
             }
         }
         Vec::new()
     }
+}
+
+/// By which of its names a servo that goes by `own` is called; what is above 252 is nobody's name, such as the factory's secondary ID.
+fn addressed(own: u8, servo: &Servo, id: u8) -> Option<Addressed> {
+    if id > MAX_ID {
+        return None;
+    }
+    let is_secondary = i32::from(id) == servo.item(crate::item::SECONDARY_ID);
+    if id == own { Some(Addressed::Own) } else { is_secondary.then_some(Addressed::Secondary) }
 }
 
 fn word(bytes: &[u8]) -> usize {
