@@ -4,7 +4,7 @@
 mod bench;
 
 use bench::{Bench, write};
-use dynamixel_emulator::packet::{BROADCAST_ID, instruction};
+use dynamixel_emulator::packet::{BROADCAST_ID, Packet, instruction};
 use dynamixel_emulator::{HardwareError, Model, ServoSettings, item};
 
 const ALERT: u8 = 0x80;
@@ -111,10 +111,28 @@ fn the_watchdog_stops_a_servo_that_nobody_speaks_to() {
     bench.0.advance(0.5);
     assert_eq!((bench.item(1, item::PRESENT_VELOCITY), bench.item(1, item::BUS_WATCHDOG)), (0, 255));
     assert_eq!(bench.try_write(1, item::GOAL_VELOCITY, 100), 4, "goals are read-only");
+    assert_eq!(bench.try_write(1, item::BUS_WATCHDOG, 100), 4, "only 0 takes the error away");
+    assert_eq!(bench.item(1, item::BUS_WATCHDOG), 255);
     bench.write(1, item::BUS_WATCHDOG, 0);
     bench.write(1, item::GOAL_VELOCITY, 100);
     bench.0.advance(2.0);
     assert!(bench.item(1, item::PRESENT_VELOCITY) > 95);
+}
+
+#[test]
+fn the_watchdog_wants_whole_instructions() {
+    let packet = |instruction| Packet { id: 1, instruction, parameters: vec![0] }.encode();
+    let broken = [&packet(instruction::PING)[..10], &[0]].concat();
+    for (bytes, stops) in [(broken, 255), (packet(instruction::STATUS), 255), (packet(instruction::PING), 10)] {
+        let mut bench = holding();
+        bench.write(1, item::BUS_WATCHDOG, 10);
+        // More than the 200 ms in which it wants to hear something.
+        for _ in 0..30 {
+            bench.0.advance(0.01);
+            bench.0.receive(&bytes);
+        }
+        assert_eq!(bench.item(1, item::BUS_WATCHDOG), stops, "{bytes:02X?}");
+    }
 }
 
 #[test]

@@ -25,13 +25,15 @@ struct Part {
 impl Bus {
     /// Executes what was heard; the slots follow one another on the wire.
     pub(super) fn dispatch(&mut self, heard: &Heard) -> Vec<Slot> {
-        self.listeners().for_each(|(_, servo)| servo.hear());
         let packet = match heard {
             Heard::Packet(packet) => packet,
             Heard::WrongCrc { id } => return self.answer_wrong_crc(*id),
         };
+        if packet.instruction == instruction::STATUS {
+            return Vec::new();
+        }
+        self.listeners().for_each(|(_, servo)| servo.hear());
         match (packet.id, packet.instruction) {
-            (_, instruction::STATUS) => Vec::new(),
             (BROADCAST_ID, instruction::PING) => self.broadcast_ping(packet),
             (BROADCAST_ID, instruction::SYNC_READ) => {
                 self.read_many(sync_parts(&packet.parameters), packet.instruction)

@@ -159,7 +159,7 @@ impl Servo {
         f64::from(self.item(item::RETURN_DELAY_TIME)) * RETURN_DELAY_S
     }
 
-    /// Something was heard on the bus, which is all that the watchdog wants.
+    /// An instruction was heard, whomever it is for, which is all that the watchdog wants.
     pub(crate) fn hear(&mut self) {
         self.silence_s = 0.0;
     }
