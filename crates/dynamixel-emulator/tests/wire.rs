@@ -74,6 +74,22 @@ fn a_secondary_id_is_obeyed_in_silence() {
     assert_eq!(bench.item(1, item::HOMING_OFFSET), 0, "the EEPROM is not written by that name");
 }
 
+#[test]
+fn nothing_that_is_kept_without_power_changes_by_a_secondary_id() {
+    let mut bench = Bench::with_ids(&[1]);
+    bench.write(1, item::SECONDARY_ID, 100);
+    bench.write(1, item::HOMING_OFFSET, 5);
+    assert_eq!(bench.ask(1, instruction::CONTROL_TABLE_BACKUP, &[0x01, 0x43, 0x54, 0x52, 0x4C]), [0]);
+    bench.write(1, item::HOMING_OFFSET, 7);
+    bench.send(100, instruction::FACTORY_RESET, &[0x02]);
+    bench.send(100, instruction::CONTROL_TABLE_BACKUP, &[0x02, 0x43, 0x54, 0x52, 0x4C]);
+    bench.send(100, instruction::REG_WRITE, &write(item::HOMING_OFFSET, 9));
+    assert_eq!(bench.item(1, item::REGISTERED_INSTRUCTION), 0);
+    bench.send(1, instruction::ACTION, &[]);
+    bench.0.advance(0.5);
+    assert_eq!((bench.item(1, item::HOMING_OFFSET), bench.item(1, item::SECONDARY_ID)), (7, 100));
+}
+
 /// The factory's Secondary ID(12) is 255, which is nobody's.
 #[test]
 fn an_id_that_no_servo_can_have_is_not_obeyed() {

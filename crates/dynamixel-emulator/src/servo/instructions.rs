@@ -50,7 +50,7 @@ impl Servo {
             }
             instruction::REG_WRITE => {
                 let (address, data) = address_and_data(parameters)?;
-                self.memory.check(address, data)?;
+                self.check(address, data, addressed)?;
                 self.registered = Some((address, data.to_vec()));
                 self.memory.set(item::REGISTERED_INSTRUCTION, 1);
             }
@@ -62,7 +62,7 @@ impl Servo {
             instruction::FACTORY_RESET => self.factory_reset(parameters, addressed)?,
             instruction::REBOOT => self.reboot(),
             instruction::CLEAR => self.clear(parameters)?,
-            instruction::CONTROL_TABLE_BACKUP if self.knows_fast_reads() => self.back_up(parameters)?,
+            instruction::CONTROL_TABLE_BACKUP if self.knows_fast_reads() => self.back_up(parameters, addressed)?,
             _ => return Err(Refusal::Instruction),
         }
         Ok(Vec::new())
@@ -101,6 +101,7 @@ impl Servo {
 
     fn factory_reset(&mut self, parameters: &[u8], addressed: Addressed) -> Result<(), Refusal> {
         let kept: &[Item] = match parameters {
+            _ if addressed == Addressed::Secondary => return Err(Refusal::Access),
             [0xFF] if addressed == Addressed::All => return Err(Refusal::Instruction),
             [0xFF] => &[],
             [0x01] => &[item::ID],
@@ -124,7 +125,7 @@ impl Servo {
         Ok(())
     }
 
-    fn back_up(&mut self, parameters: &[u8]) -> Result<(), Refusal> {
+    fn back_up(&mut self, parameters: &[u8], addressed: Addressed) -> Result<(), Refusal> {
         if parameters != BACKUP && parameters != RESTORE {
             return Err(Refusal::DataRange);
         }
@@ -135,6 +136,9 @@ impl Servo {
             self.backup = Some(self.memory.copy());
             self.memory.set(item::BACKUP_READY, 1);
             return Ok(());
+        }
+        if addressed == Addressed::Secondary {
+            return Err(Refusal::Access);
         }
         let backup = self.backup.as_ref().ok_or(Refusal::ResultFail)?;
         self.memory.restore(backup, |item| item.address < RAM);

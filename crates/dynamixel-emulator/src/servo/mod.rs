@@ -10,7 +10,7 @@ mod protection;
 
 use crate::error::Error;
 use crate::item::{self, Item};
-use crate::memory::{Memory, WATCHDOG_ERROR};
+use crate::memory::{Allowed, Memory, WATCHDOG_ERROR};
 use crate::model::Model;
 use crate::packet::Refusal;
 use crate::plant::Shaft;
@@ -208,12 +208,17 @@ impl Servo {
 
     /// A master's write.
     pub(crate) fn write(&mut self, address: usize, data: &[u8], addressed: Addressed) -> Result<(), Refusal> {
+        let allowed = self.check(address, data, addressed)?;
+        self.apply(&allowed);
+        Ok(())
+    }
+
+    fn check(&self, address: usize, data: &[u8], addressed: Addressed) -> Result<Allowed, Refusal> {
         let allowed = self.memory.check(address, data)?;
         if addressed == Addressed::Secondary && allowed.writes_eeprom() {
             return Err(Refusal::Access);
         }
-        self.apply(&allowed);
-        Ok(())
+        Ok(allowed)
     }
 
     /// A master's read.
