@@ -226,6 +226,24 @@ fn torque_that_comes_on_moves_nothing() {
     assert!((position(&bench) - 1500).abs() <= AT_REST);
 }
 
+#[test]
+fn goals_that_are_bounds_are_never_above_their_limits() {
+    let settings = ServoSettings::new(1, Model::Xm540W270).with(item::PWM_LIMIT, 700).with(item::CURRENT_LIMIT, 900);
+    let mut bench = Bench::new(vec![settings]);
+    let goals = |bench: &Bench| (bench.item(1, item::GOAL_PWM), bench.item(1, item::GOAL_CURRENT));
+    assert_eq!(goals(&bench), (700, 900), "as it comes");
+    bench.write(1, item::GOAL_PWM, 100);
+    assert_eq!(bench.ask(1, instruction::REBOOT, &[]), [0]);
+    bench.0.advance(0.5);
+    assert_eq!(goals(&bench), (700, 900), "after a reboot");
+    bench.write(1, item::PWM_LIMIT, 600);
+    bench.write(1, item::CURRENT_LIMIT, 800);
+    assert_eq!(goals(&bench), (600, 800), "with new limits");
+    bench.write(1, item::GOAL_PWM, 100);
+    bench.write(1, item::CURRENT_LIMIT, 700);
+    assert_eq!(goals(&bench), (100, 700), "each with its own");
+}
+
 /// The e-manual's note on Operating Mode(11).
 #[test]
 fn a_new_operating_mode_has_the_gains_and_the_profile_of_the_factory() {

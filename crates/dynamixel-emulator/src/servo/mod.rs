@@ -114,6 +114,7 @@ impl Servo {
         self.shaft = shaft;
         self.forget_turns();
         self.set_goals_aside();
+        self.set_bounds(|_| true);
         self.publish();
     }
 
@@ -191,6 +192,7 @@ impl Servo {
         self.overload = Overload::default();
         self.forget_turns();
         self.set_goals_aside();
+        self.set_bounds(|_| true);
         if configuration & 1 != 0 {
             self.memory.set(item::TORQUE_ENABLE, 1);
         }
