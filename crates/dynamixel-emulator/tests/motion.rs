@@ -227,6 +227,16 @@ fn torque_that_comes_on_moves_nothing() {
 }
 
 #[test]
+fn clearing_turns_leaves_other_goals_as_they_are() {
+    for (mode, goal, value) in [(0, item::GOAL_CURRENT, 1), (1, item::GOAL_VELOCITY, 3), (16, item::GOAL_PWM, 2)] {
+        let mut bench = bench(Model::Xm540W270, mode, &[]);
+        bench.write(1, goal, value);
+        assert_eq!(bench.ask(1, instruction::CLEAR, &[0x01, 0x44, 0x58, 0x4C, 0x22]), [0], "mode {mode}");
+        assert_eq!(bench.item(1, goal), value, "mode {mode}");
+    }
+}
+
+#[test]
 fn goals_that_are_bounds_are_never_above_their_limits() {
     let settings = ServoSettings::new(1, Model::Xm540W270).with(item::PWM_LIMIT, 700).with(item::CURRENT_LIMIT, 900);
     let mut bench = Bench::new(vec![settings]);

@@ -121,7 +121,7 @@ impl Servo {
             return Err(Refusal::ResultFail);
         }
         self.forget_turns();
-        self.set_goals_aside();
+        self.seat_position();
         Ok(())
     }
 
