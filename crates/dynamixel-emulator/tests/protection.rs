@@ -196,3 +196,10 @@ fn a_registered_write_obeys_the_rules_of_the_moment_of_its_action() {
     assert_eq!(bench.send(BROADCAST_ID, instruction::ACTION, &[]), []);
     assert_eq!(bench.item(1, item::LED), 1);
 }
+
+#[test]
+fn voltage_and_temperature_are_measured_before_anything_happens() {
+    let bench = Bench::with_ids(&[1]);
+    assert_eq!(bench.item(1, item::PRESENT_INPUT_VOLTAGE), 120);
+    assert_eq!(bench.item(1, item::PRESENT_TEMPERATURE), 25);
+}

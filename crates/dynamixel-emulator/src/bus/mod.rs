@@ -58,10 +58,12 @@ impl Bus {
             }
         }
         let mut servos = servos.iter().map(Servo::new).collect::<Result<Vec<_>, _>>()?;
-        servos.iter_mut().enumerate().for_each(|(i, servo)| servo.settle(plant.shaft(i)));
+        let faults = Faults::new(servos.len());
+        let surroundings = Surroundings { supply_v: faults.supply_v, temperature_c: None };
+        servos.iter_mut().enumerate().for_each(|(i, servo)| servo.settle(plant.shaft(i), surroundings));
         let host_baud = servos.first().map_or(57_600, Servo::baud_rate);
         Ok(Self {
-            faults: Faults::new(servos.len()),
+            faults,
             torques: vec![0.0; servos.len()],
             servos,
             plant,

@@ -110,8 +110,9 @@ impl Servo {
     }
 
     /// Takes the shaft as it is when the power comes on for the first time.
-    pub(crate) fn settle(&mut self, shaft: Shaft) {
+    pub(crate) fn settle(&mut self, shaft: Shaft, surroundings: Surroundings) {
         self.shaft = shaft;
+        self.sense(surroundings);
         self.forget_turns();
         self.set_goals_aside();
         self.set_bounds(|_| true);
