@@ -131,6 +131,26 @@ fn two_servos_with_one_id_garble_each_other() {
 }
 
 #[test]
+fn two_servos_with_one_id_garble_a_fast_read() {
+    for (ids, longest) in [([1, 2], 16), ([2, 1], 24)] {
+        let mut bench = Bench::with_ids(&[1, 2, 3]);
+        bench.0.faults_mut().servos[2].id = Some(1);
+        for instruction in [instruction::FAST_SYNC_READ, instruction::FAST_BULK_READ] {
+            let parameters = match instruction {
+                instruction::FAST_SYNC_READ => [&[132, 0, 4, 0][..], &ids].concat(),
+                _ => ids.iter().flat_map(|id| [*id, 132, 0, 4, 0]).collect(),
+            };
+            let packet = Packet { id: BROADCAST_ID, instruction, parameters };
+            for _ in 0..100 {
+                let answers = bench.0.receive(&packet.encode());
+                assert!(!answers.is_empty() && !is_whole(&heard(&answers)), "{ids:?}: {answers:?}");
+                assert!(answers[0].bytes.len() <= longest, "{ids:?}: nobody goes on behind a collision");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_bus_does_not_start_with_ids_that_are_none() {
     let bus = |ids: &[u8]| {
         let servos = ids.iter().map(|id| ServoSettings::new(*id, Model::Xl430W250)).collect();

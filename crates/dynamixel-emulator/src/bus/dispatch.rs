@@ -121,24 +121,33 @@ impl Bus {
     }
 
     /// One status packet that all servos write on, each with the CRC of all before it. Nothing is stuffed. What a servo cannot read
-    /// are zeros with the error.
+    /// are zeros with the error. Behind one that is missing, or two that collide, all are silent.
     fn read_fast(&mut self, parts: &[Part]) -> Vec<Slot> {
         let length = 1 + parts.iter().map(|part| part.length + 4).sum::<usize>();
         let Ok(length) = u16::try_from(length) else { return Vec::new() };
-        let mut bytes = HEADER.to_vec();
-        bytes.push(BROADCAST_ID);
-        bytes.extend_from_slice(&length.to_le_bytes());
-        bytes.push(instruction::STATUS);
-        let mut delay_s = None;
+        // The first servo writes the header too.
+        let mut head = [&HEADER[..], &[BROADCAST_ID], &length.to_le_bytes(), &[instruction::STATUS]].concat();
+        let (mut bytes, mut delay_s) = (Vec::new(), None);
         for Part { id, address, length } in parts {
-            let answers = |servo: &Servo| servo.knows_fast_reads() && servo.answers(instruction::FAST_SYNC_READ);
-            let Some((_, servo)) = self.listeners().find(|(own, servo)| own == id && answers(servo)) else { break };
-            delay_s.get_or_insert(servo.return_delay_s());
-            let data = servo.read(*address, *length);
-            bytes.extend([servo.error_field(data.as_ref().err().copied()), *id]);
-            bytes.extend(data.unwrap_or_else(|_| vec![0; *length]));
-            let crc = crc16(0, &bytes);
-            bytes.extend_from_slice(&crc.to_le_bytes());
+            let mut answers = Vec::new();
+            for (_, servo) in self.listeners().filter(|(own, _)| own == id) {
+                if servo.knows_fast_reads() && servo.answers(instruction::FAST_SYNC_READ) {
+                    delay_s.get_or_insert(servo.return_delay_s());
+                    let data = servo.read(*address, *length);
+                    let mut answer = head.clone();
+                    answer.extend([servo.error_field(data.as_ref().err().copied()), *id]);
+                    answer.extend(data.unwrap_or_else(|_| vec![0; *length]));
+                    let crc = crc16(crc16(0, &bytes), &answer);
+                    answer.extend_from_slice(&crc.to_le_bytes());
+                    answers.push(answer);
+                }
+            }
+            let is_alone = answers.len() == 1;
+            bytes.extend(self.on_the_wire(answers).unwrap_or_default());
+            if !is_alone {
+                break;
+            }
+            head.clear();
         }
         delay_s.map(|delay_s| Slot { delay_s, answers: vec![bytes] }).into_iter().collect()
     }

@@ -185,11 +185,14 @@ impl Bus {
         }
     }
 
+    /// What several servos that speak at once make of their answers.
+    fn on_the_wire(&mut self, answers: Vec<Vec<u8>>) -> Option<Vec<u8>> {
+        answers.into_iter().reduce(|a, b| self.faults.collide(&a, &b))
+    }
+
     /// Puts what servos say at one time on the wire.
     fn transmit(&mut self, slot: Slot) -> Option<Transmission> {
-        let mut answers = slot.answers.into_iter();
-        let first = answers.next()?;
-        let bytes = answers.fold(first, |a, b| self.faults.collide(&a, &b));
+        let bytes = self.on_the_wire(slot.answers)?;
         let (arriving, late_s) = self.faults.hurt(bytes.clone(), self.faults.to_host);
         self.wire_free_s += slot.delay_s + self.wire_s(bytes.len());
         // What is late waits in the adapter, not on the wire.
