@@ -203,3 +203,13 @@ fn voltage_and_temperature_are_measured_before_anything_happens() {
     assert_eq!(bench.item(1, item::PRESENT_INPUT_VOLTAGE), 120);
     assert_eq!(bench.item(1, item::PRESENT_TEMPERATURE), 25);
 }
+
+#[test]
+fn the_realtime_tick_begins_anew_with_a_reboot() {
+    let mut bench = Bench::with_ids(&[1]);
+    bench.0.advance(2.0);
+    assert!((1999..=2001).contains(&bench.item(1, item::REALTIME_TICK)), "{}", bench.item(1, item::REALTIME_TICK));
+    assert_eq!(bench.ask(1, instruction::REBOOT, &[]), [0]);
+    bench.0.advance(0.5);
+    assert!(bench.item(1, item::REALTIME_TICK) < 500, "{}", bench.item(1, item::REALTIME_TICK));
+}

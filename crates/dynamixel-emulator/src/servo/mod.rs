@@ -62,6 +62,7 @@ pub struct Servo {
     /// Deaf and without torque until then.
     booting_s: f64,
     is_shut_down: bool,
+    /// Since the power came on, or the last reboot.
     clock_s: f64,
     silence_s: f64,
     shaft: Shaft,
@@ -190,6 +191,7 @@ impl Servo {
         self.memory.set(item::BACKUP_READY, i32::from(self.backup.is_some()));
         self.registered = None;
         self.is_shut_down = false;
+        self.clock_s = 0.0;
         self.overload = Overload::default();
         self.forget_turns();
         self.set_goals_aside();
