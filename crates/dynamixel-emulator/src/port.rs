@@ -77,7 +77,11 @@ impl Drop for EmulatedPort {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(server) = self.server.take() {
-            let _ = server.join();
+            match server.join() {
+                // What broke the bus, such as its plant, must not pass for a port that was closed.
+                Err(panic) if !std::thread::panicking() => std::panic::resume_unwind(panic),
+                _ => {}
+            }
         }
     }
 }

@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use dynamixel_emulator::packet::{HEADER, Packet, instruction};
-use dynamixel_emulator::{Bus, Connection, EmulatedPort, FreeShafts, Model, ServoSettings, Timing, item};
+use dynamixel_emulator::{Bus, Connection, EmulatedPort, FreeShafts, Model, Plant, ServoSettings, Shaft, Timing, item};
 use serialport::SerialPort;
 use std::io::{ErrorKind, Write};
+use std::panic::AssertUnwindSafe;
 use std::time::{Duration, Instant};
 
 const STATUS_OF_PING: usize = 14;
@@ -88,6 +89,33 @@ fn unplugging_hangs_up_on_the_host() {
     assert_ne!(error.kind(), ErrorKind::TimedOut, "it is told, not kept waiting");
     drop(host);
     assert!(!path.exists(), "{} is gone", path.display());
+}
+
+/// A plant that breaks.
+struct Broken;
+
+impl Plant for Broken {
+    fn step(&mut self, _torques: &[f64], _dt_s: f64) {
+        panic!("the plant is broken");
+    }
+
+    fn shaft(&self, _servo: usize) -> Shaft {
+        Shaft::default()
+    }
+}
+
+#[test]
+fn a_panic_behind_the_port_comes_out_when_it_is_closed() {
+    let bus = Bus::new(vec![ServoSettings::new(1, Model::Xl430W250)], Box::new(Broken)).unwrap();
+    let port = EmulatedPort::open(bus, Timing::WallClock).unwrap();
+    let mut host = open(&port, 57_600);
+    let deadline = Instant::now() + Duration::from_secs(5);
+    // The host is hung up on once the panic has been told.
+    while ping(host.as_mut(), 1).unwrap_err().kind() == ErrorKind::TimedOut {
+        assert!(Instant::now() < deadline);
+    }
+    let panic = std::panic::catch_unwind(AssertUnwindSafe(|| drop(port))).unwrap_err();
+    assert_eq!(panic.downcast_ref(), Some(&"the plant is broken"));
 }
 
 #[test]
