@@ -40,6 +40,26 @@ fn on_the_wall_clock_answers_take_as_long_as_on_a_wire() {
 }
 
 #[test]
+fn on_the_wall_clock_the_bus_runs_ahead_by_no_more_than_a_portion() {
+    let started = Instant::now();
+    let port = port(Timing::WallClock);
+    let mut host = open(&port, 57_600);
+    // To nobody, so that there is no answer that is waited for.
+    let packet = Packet { id: 9, instruction: instruction::PING, parameters: vec![] }.encode();
+    let bytes = packet.repeat(400);
+    host.write_all(&bytes).unwrap();
+    let takes_s = |bytes: usize| bytes as f64 * 10.0 / 57_600.0;
+    let mut now_s = 0.0;
+    while now_s < takes_s(bytes.len()) {
+        now_s = port.with_bus(|bus| bus.now_s());
+        let ahead_s = now_s - started.elapsed().as_secs_f64();
+        // Of 1024 bytes.
+        assert!(ahead_s <= takes_s(1024), "{ahead_s} s");
+        std::thread::yield_now();
+    }
+}
+
+#[test]
 fn in_bus_time_answers_come_at_once_and_only_traffic_makes_time_pass() {
     let port = port(Timing::BusTime);
     let mut host = open(&port, 57_600);

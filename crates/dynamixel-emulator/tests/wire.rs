@@ -50,6 +50,15 @@ fn a_servo_at_another_rate_is_silent() {
 }
 
 #[test]
+fn a_host_that_is_slower_than_any_servo_is_not_waited_for() {
+    let mut bench = Bench::with_ids(&[1]);
+    for baud in [0, 50, 9599] {
+        bench.0.set_host_baud(baud);
+        assert_eq!((bench.0.receive(&ping(1)), bench.0.now_s()), (vec![], 0.0), "{baud} baud");
+    }
+}
+
+#[test]
 fn the_host_hears_itself_through_an_adapter_that_echoes() {
     let mut bench = Bench::with_ids(&[1]);
     bench.0.set_echo(true);

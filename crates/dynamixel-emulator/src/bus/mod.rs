@@ -8,6 +8,7 @@ use crate::packet::{MAX_ID, Parser};
 use crate::plant::Plant;
 use crate::servo::PERIOD_S;
 use crate::servo::{Servo, ServoSettings, Surroundings};
+use crate::units::BAUD_RATES;
 use dispatch::Slot;
 
 /// Start bit, eight data bits, stop bit.
@@ -80,6 +81,9 @@ impl Bus {
     /// Takes bytes that the host sends now, and says what comes back. Simulated time goes on to the moment at which the last byte is on
     /// the wire, since only then do servos know what they were told.
     pub fn receive(&mut self, bytes: &[u8]) -> Vec<Transmission> {
+        if self.host_baud < BAUD_RATES[0] {
+            return Vec::new();
+        }
         let (arriving, late_s) = self.faults.hurt(bytes.to_vec(), self.faults.to_servos);
         let starts_s = (self.now_s + late_s).max(self.wire_free_s);
         let ends_s = starts_s + self.wire_s(bytes.len());
@@ -147,11 +151,10 @@ impl Bus {
         &mut self.faults
     }
 
-    /// The baud rate of the host's port; servos at another hear noise and stay silent.
+    /// The baud rate of the host's port; servos at another hear noise and stay silent. Below the least rate of a servo no time passes
+    /// either, which at 50 baud would be a minute a packet.
     pub fn set_host_baud(&mut self, baud: u32) {
-        if baud > 0 {
-            self.host_baud = baud;
-        }
+        self.host_baud = baud;
     }
 
     /// Whether the host hears itself, as through an adapter that does not switch its receiver off.
