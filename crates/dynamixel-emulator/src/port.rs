@@ -94,6 +94,10 @@ fn lock(bus: &Mutex<Bus>) -> MutexGuard<'_, Bus> {
 /// How long the server waits for bytes before it lets time pass, or looks whether it is to stop.
 const PATIENCE: Duration = Duration::from_millis(1);
 
+/// After so many turns without a byte a host is done with its packet, whole or not, though no time passes on a silent bus. Far less
+/// than any host waits for an answer.
+const PAUSE_TURNS: u32 = 20;
+
 /// More than any packet of the SDK.
 const PORTION: usize = 1024;
 
@@ -115,6 +119,7 @@ impl Server {
         let (started, origin_s) = (Instant::now(), lock(&self.bus).now_s());
         let wall_s = || origin_s + started.elapsed().as_secs_f64();
         let mut waiting: Vec<Transmission> = Vec::new();
+        let mut silent_turns = 0;
         while !self.stop.load(Ordering::Relaxed) {
             let ahead_s = lock(&self.bus).now_s() - wall_s();
             let bytes = if timing == Timing::WallClock && ahead_s > 0.0 {
@@ -133,6 +138,10 @@ impl Server {
             if timing == Timing::WallClock {
                 let behind_s = now_s - bus.now_s();
                 bus.advance(behind_s);
+            }
+            silent_turns = if bytes.is_empty() { silent_turns + 1 } else { 0 };
+            if timing == Timing::BusTime && silent_turns == PAUSE_TURNS {
+                bus.pause();
             }
             if !bytes.is_empty() {
                 if let Some(baud) = self.baud() {

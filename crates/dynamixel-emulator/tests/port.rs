@@ -69,6 +69,16 @@ fn in_bus_time_answers_come_at_once_and_only_traffic_makes_time_pass() {
 }
 
 #[test]
+fn in_bus_time_a_truncated_packet_does_not_take_the_next_one_with_it() {
+    let port = port(Timing::BusTime);
+    let mut host = open(&port, 57_600);
+    let packet = Packet { id: 1, instruction: instruction::WRITE, parameters: vec![0; 100] }.encode();
+    host.write_all(&packet[..12]).unwrap();
+    assert_eq!(host.read(&mut [0]).unwrap_err().kind(), ErrorKind::TimedOut);
+    assert_eq!(ping(host.as_mut(), 1).unwrap()[4], 1);
+}
+
+#[test]
 fn the_rate_is_the_one_that_the_host_sets() {
     let port = port(Timing::BusTime);
     let mut host = open(&port, 1_000_000);

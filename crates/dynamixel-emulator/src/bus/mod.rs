@@ -116,6 +116,11 @@ impl Bus {
         }
     }
 
+    /// Servos wait for the next header.
+    pub(crate) fn pause(&mut self) {
+        self.parser.reset();
+    }
+
     /// Simulated time since the bus was made, in s.
     #[must_use]
     pub fn now_s(&self) -> f64 {
