@@ -157,6 +157,9 @@ impl Server {
                     bus.advance(to_come_s);
                     self.write(&transmission.bytes);
                 }
+                // Answers that are lost take their time too.
+                let to_come_s = bus.wire_free_s() - bus.now_s();
+                bus.advance(to_come_s);
                 continue;
             }
             drop(bus);

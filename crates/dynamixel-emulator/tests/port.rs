@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use dynamixel_emulator::packet::{HEADER, Packet, instruction};
-use dynamixel_emulator::{Bus, Connection, EmulatedPort, FreeShafts, Model, Plant, ServoSettings, Shaft, Timing, item};
+use dynamixel_emulator::{
+    Bus, Connection, EmulatedPort, FreeShafts, Model, Plant, Rates, ServoSettings, Shaft, Timing, item,
+};
 use serialport::SerialPort;
 use std::io::{ErrorKind, Write};
 use std::panic::AssertUnwindSafe;
@@ -37,6 +39,7 @@ fn on_the_wall_clock_answers_take_as_long_as_on_a_wire() {
     assert!(started.elapsed() >= least, "{:?} instead of {least:?}", started.elapsed());
     let (now_s, ran) = port.with_bus(|bus| (bus.now_s(), started.elapsed()));
     assert!(now_s >= least.as_secs_f64(), "{now_s} s on the bus in {ran:?}");
+    assert_eq!(port.with_bus(|bus| bus.faults().talked_over), 0);
 }
 
 #[test]
@@ -66,6 +69,14 @@ fn in_bus_time_answers_come_at_once_and_only_traffic_makes_time_pass() {
     (0..20).for_each(|_| assert_eq!(ping(host.as_mut(), 1).unwrap()[4], 1));
     let expected = 20.0 * (24.0 * 10.0 / 57_600.0 + 500e-6);
     assert!((port.with_bus(|bus| bus.now_s()) - expected).abs() < 1e-9);
+    port.with_bus(|bus| bus.faults_mut().to_host = Rates { dropped: 1.0, ..Rates::default() });
+    assert_eq!(ping(host.as_mut(), 1).unwrap_err().kind(), ErrorKind::TimedOut);
+    assert_eq!(ping(host.as_mut(), 1).unwrap_err().kind(), ErrorKind::TimedOut);
+    assert_eq!(
+        port.with_bus(|bus| bus.faults().talked_over),
+        0,
+        "an answer that is lost is over before the host gives up"
+    );
 }
 
 #[test]

@@ -36,6 +36,21 @@ fn an_answer_takes_its_bytes_and_the_return_delay() {
 }
 
 #[test]
+fn a_host_that_does_not_wait_for_the_answer_is_found_out() {
+    let mut bench = Bench::with_ids(&[1]);
+    let talked_over = |bench: &Bench| bench.0.faults().talked_over;
+    bench.0.receive(&ping(9));
+    let ends_s = bench.0.receive(&ping(1))[0].at_s;
+    assert_eq!(talked_over(&bench), 0, "nobody answers the first");
+    bench.0.advance(ends_s - bench.0.now_s());
+    let ends_s = bench.0.receive(&ping(1))[0].at_s;
+    assert_eq!(talked_over(&bench), 0, "the answer is over");
+    bench.0.advance((ends_s - bench.0.now_s()) / 2.0);
+    assert!(is_whole(&bench.send(1, PING, &[])), "it waits");
+    assert_eq!(talked_over(&bench), 1);
+}
+
+#[test]
 fn a_servo_at_another_rate_is_silent() {
     let servo = ServoSettings::new(2, Model::Xl430W250).with(item::BAUD_RATE, 3);
     let mut bench = Bench::new(vec![ServoSettings::new(1, Model::Xl430W250), servo]);

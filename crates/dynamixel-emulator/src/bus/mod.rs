@@ -15,6 +15,8 @@ use dispatch::Slot;
 const BITS_A_BYTE: f64 = 10.0;
 /// A pause in a packet after which servos wait for the next header.
 const GREATEST_PAUSE_S: f64 = 1.5e-3;
+/// More than what sums of times are off by, and far less than a bit.
+const ROUNDING_S: f64 = 1e-9;
 
 /// Bytes that come to the host.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,7 +87,11 @@ impl Bus {
             return Vec::new();
         }
         let (arriving, late_s) = self.faults.hurt(bytes.to_vec(), self.faults.to_servos);
-        let starts_s = (self.now_s + late_s).max(self.wire_free_s);
+        let at_s = self.now_s + late_s;
+        // What the host itself has sent before is no answer.
+        let is_answered = self.wire_free_s > self.heard_s;
+        self.faults.talked_over += u64::from(is_answered && at_s + ROUNDING_S < self.wire_free_s);
+        let starts_s = at_s.max(self.wire_free_s);
         let ends_s = starts_s + self.wire_s(bytes.len());
         if self.parser.is_amid() && starts_s - self.heard_s > GREATEST_PAUSE_S {
             self.parser.reset();
@@ -114,6 +120,11 @@ impl Bus {
             self.remainder_s -= PERIOD_S;
             self.step();
         }
+    }
+
+    /// When the last byte that anybody sends is over, in s.
+    pub(crate) fn wire_free_s(&self) -> f64 {
+        self.wire_free_s
     }
 
     /// Servos wait for the next header.
