@@ -68,6 +68,9 @@ pub struct Faults {
     pub servos: Vec<ServoFaults>,
     /// How often a packet has been hurt.
     pub hurt: u64,
+    /// How often the host has begun to send before the last answer to it was over. On a real bus the two garble each other; here what
+    /// the host says waits until the wire is free.
+    pub talked_over: u64,
     random: fastrand::Rng,
 }
 
@@ -82,6 +85,7 @@ impl Faults {
             supply_v: SUPPLY_V,
             servos: vec![ServoFaults::default(); servos],
             hurt: 0,
+            talked_over: 0,
             random: fastrand::Rng::with_seed(0),
         }
     }

@@ -129,7 +129,10 @@ impl Memory {
         let first = usize::from(row.item.address);
         let data: Option<Vec<u8>> = (first..first + usize::from(row.item.size)).map(of_address).collect();
         let value = decode(&data.ok_or(Refusal::DataLength)?);
-        if !row.range.contains(value) || (self.is_goal(row.item) && self.get(item::BUS_WATCHDOG) == WATCHDOG_ERROR) {
+        let is_stopped = self.get(item::BUS_WATCHDOG) == WATCHDOG_ERROR;
+        // Assumed: nothing but the 0 of the e-manual takes the watchdog's error away.
+        let is_kept = is_stopped && (self.is_goal(row.item) || (row.item == item::BUS_WATCHDOG && value != 0));
+        if is_kept || !row.range.contains(value) {
             return Err(Refusal::DataRange);
         }
         if self.limits(row.item).is_some_and(|(least, greatest)| !(least..=greatest).contains(&value)) {

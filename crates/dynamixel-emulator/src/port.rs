@@ -77,7 +77,11 @@ impl Drop for EmulatedPort {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(server) = self.server.take() {
-            let _ = server.join();
+            match server.join() {
+                // What broke the bus, such as its plant, must not pass for a port that was closed.
+                Err(panic) if !std::thread::panicking() => std::panic::resume_unwind(panic),
+                _ => {}
+            }
         }
     }
 }
@@ -90,6 +94,18 @@ fn lock(bus: &Mutex<Bus>) -> MutexGuard<'_, Bus> {
 /// How long the server waits for bytes before it lets time pass, or looks whether it is to stop.
 const PATIENCE: Duration = Duration::from_millis(1);
 
+/// After so many turns without a byte a host is done with its packet, whole or not, though no time passes on a silent bus. Far less
+/// than any host waits for an answer.
+const PAUSE_TURNS: u32 = 20;
+
+/// More than any packet of the SDK.
+const PORTION: usize = 1024;
+
+/// Sleeps for so long, but not longer than the server's patience.
+fn nap(seconds: f64) {
+    std::thread::sleep(PATIENCE.min(Duration::try_from_secs_f64(seconds).unwrap_or_default()));
+}
+
 struct Server {
     master: OwnedFd,
     /// Kept open, or the master gets an error whenever no host has the port open.
@@ -101,17 +117,31 @@ struct Server {
 impl Server {
     fn run(self, timing: Timing) {
         let (started, origin_s) = (Instant::now(), lock(&self.bus).now_s());
+        let wall_s = || origin_s + started.elapsed().as_secs_f64();
         let mut waiting: Vec<Transmission> = Vec::new();
+        let mut silent_turns = 0;
         while !self.stop.load(Ordering::Relaxed) {
-            if waiting.is_empty() {
-                self.wait_for_bytes();
-            }
-            let Ok(bytes) = self.read() else { return };
+            let ahead_s = lock(&self.bus).now_s() - wall_s();
+            let bytes = if timing == Timing::WallClock && ahead_s > 0.0 {
+                // What is on the wire already comes first.
+                nap(ahead_s);
+                Vec::new()
+            } else {
+                if waiting.is_empty() {
+                    self.wait_for_bytes();
+                }
+                let Ok(bytes) = self.read() else { return };
+                bytes
+            };
             let mut bus = lock(&self.bus);
-            let now_s = origin_s + started.elapsed().as_secs_f64();
+            let now_s = wall_s();
             if timing == Timing::WallClock {
                 let behind_s = now_s - bus.now_s();
                 bus.advance(behind_s);
+            }
+            silent_turns = if bytes.is_empty() { silent_turns + 1 } else { 0 };
+            if timing == Timing::BusTime && silent_turns == PAUSE_TURNS {
+                bus.pause();
             }
             if !bytes.is_empty() {
                 if let Some(baud) = self.baud() {
@@ -127,14 +157,16 @@ impl Server {
                     bus.advance(to_come_s);
                     self.write(&transmission.bytes);
                 }
+                // Answers that are lost take their time too.
+                let to_come_s = bus.wire_free_s() - bus.now_s();
+                bus.advance(to_come_s);
                 continue;
             }
             drop(bus);
             let due = waiting.iter().take_while(|transmission| transmission.at_s <= now_s).count();
             waiting.drain(..due).for_each(|transmission| self.write(&transmission.bytes));
             if let Some(next) = waiting.first() {
-                let to_come_s = next.at_s - origin_s - started.elapsed().as_secs_f64();
-                std::thread::sleep(PATIENCE.min(Duration::try_from_secs_f64(to_come_s).unwrap_or_default()));
+                nap(next.at_s - wall_s());
             }
         }
     }
@@ -144,16 +176,13 @@ impl Server {
         let _ = poll(&mut [PollFd::new(self.master.as_fd(), PollFlags::POLLIN)], timeout);
     }
 
-    /// All that the host has sent.
+    /// What the host has sent, a portion at a time: nobody else gets at the bus while it is simulated.
     fn read(&self) -> Result<Vec<u8>, Errno> {
-        let (mut bytes, mut portion) = (Vec::new(), [0; 4096]);
-        loop {
-            match read(&self.master, &mut portion) {
-                Ok(0) | Err(Errno::EAGAIN) => return Ok(bytes),
-                Ok(count) => bytes.extend_from_slice(&portion[..count]),
-                Err(Errno::EINTR) => {}
-                Err(error) => return Err(error),
-            }
+        let mut portion = [0; PORTION];
+        match read(&self.master, &mut portion) {
+            Ok(count) => Ok(portion[..count].to_vec()),
+            Err(Errno::EAGAIN | Errno::EINTR) => Ok(Vec::new()),
+            Err(error) => Err(error),
         }
     }
 

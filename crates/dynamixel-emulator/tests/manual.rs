@@ -186,7 +186,9 @@ fn bus(servos: &[Servo]) -> Bus {
         shafts = shafts.turned(i, f64::from(servo.position - CENTRE) * PULSE_RAD);
         let mode = if servo.pwm.is_some() { 16 } else { 3 };
         let sold = ServoSettings::new(servo.id, model).with(item::FIRMWARE_VERSION, servo.firmware);
-        settings.push(sold.with(item::OPERATING_MODE, mode));
+        // Other limits than what the example of bulk write sets.
+        let limited = sold.with(item::MAX_VOLTAGE_LIMIT, 150).with(item::TEMPERATURE_LIMIT, 70);
+        settings.push(limited.with(item::OPERATING_MODE, mode));
     }
     let mut bus = Bus::new(settings, Box::new(shafts)).unwrap();
     bus.faults_mut().supply_v = SUPPLY_V;

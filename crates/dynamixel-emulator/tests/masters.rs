@@ -152,6 +152,10 @@ fn accepted<T>(result: Result<(T, rustypot::StatusError), Box<dyn std::error::Er
 }
 
 impl Master for Pollen {
+    fn knows_models(&self) -> bool {
+        false
+    }
+
     fn ping(&mut self, id: u8) -> Answer<u16> {
         let found = self.handler.ping(self.port.as_mut(), id);
         Some(heard(found).and_then(|found| if found { Ok(0) } else { Err(Failure::Silent) }))

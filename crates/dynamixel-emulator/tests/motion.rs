@@ -225,3 +225,49 @@ fn torque_that_comes_on_moves_nothing() {
     assert_eq!(bench.item(1, item::TORQUE_ENABLE), 1);
     assert!((position(&bench) - 1500).abs() <= AT_REST);
 }
+
+#[test]
+fn clearing_turns_leaves_other_goals_as_they_are() {
+    for (mode, goal, value) in [(0, item::GOAL_CURRENT, 1), (1, item::GOAL_VELOCITY, 3), (16, item::GOAL_PWM, 2)] {
+        let mut bench = bench(Model::Xm540W270, mode, &[]);
+        bench.write(1, goal, value);
+        assert_eq!(bench.ask(1, instruction::CLEAR, &[0x01, 0x44, 0x58, 0x4C, 0x22]), [0], "mode {mode}");
+        assert_eq!(bench.item(1, goal), value, "mode {mode}");
+    }
+}
+
+#[test]
+fn goals_that_are_bounds_are_never_above_their_limits() {
+    let settings = ServoSettings::new(1, Model::Xm540W270).with(item::PWM_LIMIT, 700).with(item::CURRENT_LIMIT, 900);
+    let mut bench = Bench::new(vec![settings]);
+    let goals = |bench: &Bench| (bench.item(1, item::GOAL_PWM), bench.item(1, item::GOAL_CURRENT));
+    assert_eq!(goals(&bench), (700, 900), "as it comes");
+    bench.write(1, item::GOAL_PWM, 100);
+    assert_eq!(bench.ask(1, instruction::REBOOT, &[]), [0]);
+    bench.0.advance(0.5);
+    assert_eq!(goals(&bench), (700, 900), "after a reboot");
+    bench.write(1, item::PWM_LIMIT, 600);
+    bench.write(1, item::CURRENT_LIMIT, 800);
+    assert_eq!(goals(&bench), (600, 800), "with new limits");
+    bench.write(1, item::GOAL_PWM, 100);
+    bench.write(1, item::CURRENT_LIMIT, 700);
+    assert_eq!(goals(&bench), (100, 700), "each with its own");
+}
+
+/// The e-manual's note on Operating Mode(11).
+#[test]
+fn a_new_operating_mode_has_the_gains_and_the_profile_of_the_factory() {
+    let settings = ServoSettings::new(1, Model::Xm540W270).with(item::PWM_LIMIT, 700).with(item::CURRENT_LIMIT, 900);
+    let mut bench = Bench::new(vec![settings]);
+    let set: Vec<(Item, i32)> = [76, 78, 80, 82, 84, 88, 90].map(|address| (Item { address, size: 2 }, 77)).to_vec();
+    let set =
+        [set, vec![(item::PROFILE_ACCELERATION, 5), (item::PROFILE_VELOCITY, 50), (item::GOAL_PWM, 300)]].concat();
+    let initial = [1920, 100, 0, 0, 800, 0, 0, 0, 0, 700];
+    let values = |bench: &Bench| set.iter().map(|(item, _)| bench.item(1, *item)).collect::<Vec<_>>();
+    set.iter().for_each(|(item, value)| bench.write(1, *item, *value));
+    bench.write(1, item::GOAL_CURRENT, 100);
+    bench.write(1, item::OPERATING_MODE, 3);
+    assert_eq!(values(&bench), set.iter().map(|(_, value)| *value).collect::<Vec<_>>(), "it was in that mode");
+    bench.write(1, item::OPERATING_MODE, 5);
+    assert_eq!((values(&bench), bench.item(1, item::GOAL_CURRENT)), (initial.to_vec(), 900));
+}

@@ -4,7 +4,7 @@
 mod bench;
 
 use bench::{Bench, write};
-use dynamixel_emulator::packet::{BROADCAST_ID, instruction};
+use dynamixel_emulator::packet::{BROADCAST_ID, Packet, instruction};
 use dynamixel_emulator::{HardwareError, Model, ServoSettings, item};
 
 const ALERT: u8 = 0x80;
@@ -111,10 +111,28 @@ fn the_watchdog_stops_a_servo_that_nobody_speaks_to() {
     bench.0.advance(0.5);
     assert_eq!((bench.item(1, item::PRESENT_VELOCITY), bench.item(1, item::BUS_WATCHDOG)), (0, 255));
     assert_eq!(bench.try_write(1, item::GOAL_VELOCITY, 100), 4, "goals are read-only");
+    assert_eq!(bench.try_write(1, item::BUS_WATCHDOG, 100), 4, "only 0 takes the error away");
+    assert_eq!(bench.item(1, item::BUS_WATCHDOG), 255);
     bench.write(1, item::BUS_WATCHDOG, 0);
     bench.write(1, item::GOAL_VELOCITY, 100);
     bench.0.advance(2.0);
     assert!(bench.item(1, item::PRESENT_VELOCITY) > 95);
+}
+
+#[test]
+fn the_watchdog_wants_whole_instructions() {
+    let packet = |instruction| Packet { id: 1, instruction, parameters: vec![0] }.encode();
+    let broken = [&packet(instruction::PING)[..10], &[0]].concat();
+    for (bytes, stops) in [(broken, 255), (packet(instruction::STATUS), 255), (packet(instruction::PING), 10)] {
+        let mut bench = holding();
+        bench.write(1, item::BUS_WATCHDOG, 10);
+        // More than the 200 ms in which it wants to hear something.
+        for _ in 0..30 {
+            bench.0.advance(0.01);
+            bench.0.receive(&bytes);
+        }
+        assert_eq!(bench.item(1, item::BUS_WATCHDOG), stops, "{bytes:02X?}");
+    }
 }
 
 #[test]
@@ -177,4 +195,21 @@ fn a_registered_write_obeys_the_rules_of_the_moment_of_its_action() {
     assert_eq!(bench.ask(1, instruction::REG_WRITE, &write(item::LED, 1)), [0]);
     assert_eq!(bench.send(BROADCAST_ID, instruction::ACTION, &[]), []);
     assert_eq!(bench.item(1, item::LED), 1);
+}
+
+#[test]
+fn voltage_and_temperature_are_measured_before_anything_happens() {
+    let bench = Bench::with_ids(&[1]);
+    assert_eq!(bench.item(1, item::PRESENT_INPUT_VOLTAGE), 120);
+    assert_eq!(bench.item(1, item::PRESENT_TEMPERATURE), 25);
+}
+
+#[test]
+fn the_realtime_tick_begins_anew_with_a_reboot() {
+    let mut bench = Bench::with_ids(&[1]);
+    bench.0.advance(2.0);
+    assert!((1999..=2001).contains(&bench.item(1, item::REALTIME_TICK)), "{}", bench.item(1, item::REALTIME_TICK));
+    assert_eq!(bench.ask(1, instruction::REBOOT, &[]), [0]);
+    bench.0.advance(0.5);
+    assert!(bench.item(1, item::REALTIME_TICK) < 500, "{}", bench.item(1, item::REALTIME_TICK));
 }

@@ -36,6 +36,21 @@ fn an_answer_takes_its_bytes_and_the_return_delay() {
 }
 
 #[test]
+fn a_host_that_does_not_wait_for_the_answer_is_found_out() {
+    let mut bench = Bench::with_ids(&[1]);
+    let talked_over = |bench: &Bench| bench.0.faults().talked_over;
+    bench.0.receive(&ping(9));
+    let ends_s = bench.0.receive(&ping(1))[0].at_s;
+    assert_eq!(talked_over(&bench), 0, "nobody answers the first");
+    bench.0.advance(ends_s - bench.0.now_s());
+    let ends_s = bench.0.receive(&ping(1))[0].at_s;
+    assert_eq!(talked_over(&bench), 0, "the answer is over");
+    bench.0.advance((ends_s - bench.0.now_s()) / 2.0);
+    assert!(is_whole(&bench.send(1, PING, &[])), "it waits");
+    assert_eq!(talked_over(&bench), 1);
+}
+
+#[test]
 fn a_servo_at_another_rate_is_silent() {
     let servo = ServoSettings::new(2, Model::Xl430W250).with(item::BAUD_RATE, 3);
     let mut bench = Bench::new(vec![ServoSettings::new(1, Model::Xl430W250), servo]);
@@ -47,6 +62,15 @@ fn a_servo_at_another_rate_is_silent() {
     assert_eq!(bench.scan(), [0u8; 0]);
     bench.0.set_host_baud(57_600);
     assert_eq!(bench.scan(), [1, 2]);
+}
+
+#[test]
+fn a_host_that_is_slower_than_any_servo_is_not_waited_for() {
+    let mut bench = Bench::with_ids(&[1]);
+    for baud in [0, 50, 9599] {
+        bench.0.set_host_baud(baud);
+        assert_eq!((bench.0.receive(&ping(1)), bench.0.now_s()), (vec![], 0.0), "{baud} baud");
+    }
 }
 
 #[test]
@@ -75,6 +99,36 @@ fn a_secondary_id_is_obeyed_in_silence() {
 }
 
 #[test]
+fn nothing_that_is_kept_without_power_changes_by_a_secondary_id() {
+    let mut bench = Bench::with_ids(&[1]);
+    bench.write(1, item::SECONDARY_ID, 100);
+    bench.write(1, item::HOMING_OFFSET, 5);
+    assert_eq!(bench.ask(1, instruction::CONTROL_TABLE_BACKUP, &[0x01, 0x43, 0x54, 0x52, 0x4C]), [0]);
+    bench.write(1, item::HOMING_OFFSET, 7);
+    bench.send(100, instruction::FACTORY_RESET, &[0x02]);
+    bench.send(100, instruction::CONTROL_TABLE_BACKUP, &[0x02, 0x43, 0x54, 0x52, 0x4C]);
+    bench.send(100, instruction::REG_WRITE, &write(item::HOMING_OFFSET, 9));
+    assert_eq!(bench.item(1, item::REGISTERED_INSTRUCTION), 0);
+    bench.send(1, instruction::ACTION, &[]);
+    bench.0.advance(0.5);
+    assert_eq!((bench.item(1, item::HOMING_OFFSET), bench.item(1, item::SECONDARY_ID)), (7, 100));
+}
+
+/// The factory's Secondary ID(12) is 255, which is nobody's.
+#[test]
+fn an_id_that_no_servo_can_have_is_not_obeyed() {
+    let mut bench = Bench::with_ids(&[1]);
+    for id in [253, 254, 255] {
+        bench.write(1, item::SECONDARY_ID, i32::from(id));
+        bench.send(BROADCAST_ID, instruction::SYNC_WRITE, &[65, 0, 1, 0, id, 1]);
+        bench.send(BROADCAST_ID, instruction::BULK_WRITE, &[id, 65, 0, 1, 0, 1]);
+        assert_eq!(bench.item(1, item::LED), 0, "{id}");
+    }
+    bench.send(BROADCAST_ID, instruction::SYNC_WRITE, &[65, 0, 1, 0, 1, 1]);
+    assert_eq!(bench.item(1, item::LED), 1);
+}
+
+#[test]
 fn the_status_return_level_is_kept() {
     let mut bench = Bench::with_ids(&[1]);
     let answers = |bench: &mut Bench| {
@@ -98,6 +152,26 @@ fn two_servos_with_one_id_garble_each_other() {
     assert_eq!(bench.send(2, PING, &[]), []);
     bench.0.faults_mut().servos[1].id = None;
     assert_eq!(bench.scan(), [1, 2]);
+}
+
+#[test]
+fn two_servos_with_one_id_garble_a_fast_read() {
+    for (ids, longest) in [([1, 2], 16), ([2, 1], 24)] {
+        let mut bench = Bench::with_ids(&[1, 2, 3]);
+        bench.0.faults_mut().servos[2].id = Some(1);
+        for instruction in [instruction::FAST_SYNC_READ, instruction::FAST_BULK_READ] {
+            let parameters = match instruction {
+                instruction::FAST_SYNC_READ => [&[132, 0, 4, 0][..], &ids].concat(),
+                _ => ids.iter().flat_map(|id| [*id, 132, 0, 4, 0]).collect(),
+            };
+            let packet = Packet { id: BROADCAST_ID, instruction, parameters };
+            for _ in 0..100 {
+                let answers = bench.0.receive(&packet.encode());
+                assert!(!answers.is_empty() && !is_whole(&heard(&answers)), "{ids:?}: {answers:?}");
+                assert!(answers[0].bytes.len() <= longest, "{ids:?}: nobody goes on behind a collision");
+            }
+        }
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 #![no_main]
 
 use dynamixel_emulator::packet::{BROADCAST_ID, HEADER, Heard, Packet, Parser, crc16};
+use dynamixel_emulator::units::BAUD_RATES;
 use dynamixel_emulator::{Bus, FreeShafts, Model, ServoSettings};
 use libfuzzer_sys::fuzz_target;
 
@@ -28,16 +29,20 @@ fuzz_target!(|bytes: &[u8]| {
             break;
         }
         let count = usize::from(*count);
+        rest = tail;
+        // A rate and a pause need no data.
+        if *what >= 0xF0 {
+            bus.set_host_baud(BAUD_RATES.get(count).copied().unwrap_or(count as u32));
+            continue;
+        }
+        if what % 4 == 1 {
+            bus.advance(count as f64 * 1e-3);
+            continue;
+        }
         let (data, tail) = tail.split_at(count.min(tail.len()));
         rest = tail;
         let answers = match what % 4 {
             0 => bus.receive(data),
-            // A pause needs no data.
-            1 => {
-                rest = &bytes[bytes.len() - tail.len() - data.len()..];
-                bus.advance(count as f64 * 1e-3);
-                Vec::new()
-            }
             _ => {
                 let [id, instruction, parameters @ ..] = data else { continue };
                 // Most packets are for servos that there are.

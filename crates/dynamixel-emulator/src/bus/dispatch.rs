@@ -2,7 +2,7 @@
 
 use super::Bus;
 use crate::faults::Connection;
-use crate::packet::{BROADCAST_ID, HEADER, Heard, Packet, Refusal, crc16, instruction};
+use crate::packet::{BROADCAST_ID, HEADER, Heard, MAX_ID, Packet, Refusal, crc16, instruction};
 use crate::servo::{Addressed, Servo};
 
 /// Servos of other rates than the host's by more than this hear noise: beyond it the tenth bit is sampled in its neighbour.
@@ -25,13 +25,15 @@ struct Part {
 impl Bus {
     /// Executes what was heard; the slots follow one another on the wire.
     pub(super) fn dispatch(&mut self, heard: &Heard) -> Vec<Slot> {
-        self.listeners().for_each(|(_, servo)| servo.hear());
         let packet = match heard {
             Heard::Packet(packet) => packet,
             Heard::WrongCrc { id } => return self.answer_wrong_crc(*id),
         };
+        if packet.instruction == instruction::STATUS {
+            return Vec::new();
+        }
+        self.listeners().for_each(|(_, servo)| servo.hear());
         match (packet.id, packet.instruction) {
-            (_, instruction::STATUS) => Vec::new(),
             (BROADCAST_ID, instruction::PING) => self.broadcast_ping(packet),
             (BROADCAST_ID, instruction::SYNC_READ) => {
                 self.read_many(sync_parts(&packet.parameters), packet.instruction)
@@ -65,17 +67,18 @@ impl Bus {
     fn execute(&mut self, packet: &Packet) -> Vec<Slot> {
         let mut slot = Slot { delay_s: f64::INFINITY, answers: Vec::new() };
         for (id, servo) in self.listeners() {
-            if id == packet.id {
+            let Some(addressed) = addressed(id, servo, packet.id) else { continue };
+            if addressed == Addressed::Own {
                 // The answer comes from who it was before, after the delay that it had before.
                 let delay_s = servo.return_delay_s();
                 let answers = servo.answers(packet.instruction);
-                let result = servo.execute(packet, Addressed::Own);
+                let result = servo.execute(packet, addressed);
                 if answers {
                     slot.delay_s = slot.delay_s.min(delay_s);
                     slot.answers.push(servo.status(id, result).encode());
                 }
-            } else if i32::from(packet.id) == servo.item(crate::item::SECONDARY_ID) {
-                drop(servo.execute(packet, Addressed::Secondary));
+            } else {
+                drop(servo.execute(packet, addressed));
             }
         }
         vec![slot]
@@ -118,24 +121,33 @@ impl Bus {
     }
 
     /// One status packet that all servos write on, each with the CRC of all before it. Nothing is stuffed. What a servo cannot read
-    /// are zeros with the error.
+    /// are zeros with the error. Behind one that is missing, or two that collide, all are silent.
     fn read_fast(&mut self, parts: &[Part]) -> Vec<Slot> {
         let length = 1 + parts.iter().map(|part| part.length + 4).sum::<usize>();
         let Ok(length) = u16::try_from(length) else { return Vec::new() };
-        let mut bytes = HEADER.to_vec();
-        bytes.push(BROADCAST_ID);
-        bytes.extend_from_slice(&length.to_le_bytes());
-        bytes.push(instruction::STATUS);
-        let mut delay_s = None;
+        // The first servo writes the header too.
+        let mut head = [&HEADER[..], &[BROADCAST_ID], &length.to_le_bytes(), &[instruction::STATUS]].concat();
+        let (mut bytes, mut delay_s) = (Vec::new(), None);
         for Part { id, address, length } in parts {
-            let answers = |servo: &Servo| servo.knows_fast_reads() && servo.answers(instruction::FAST_SYNC_READ);
-            let Some((_, servo)) = self.listeners().find(|(own, servo)| own == id && answers(servo)) else { break };
-            delay_s.get_or_insert(servo.return_delay_s());
-            let data = servo.read(*address, *length);
-            bytes.extend([servo.error_field(data.as_ref().err().copied()), *id]);
-            bytes.extend(data.unwrap_or_else(|_| vec![0; *length]));
-            let crc = crc16(0, &bytes);
-            bytes.extend_from_slice(&crc.to_le_bytes());
+            let mut answers = Vec::new();
+            for (_, servo) in self.listeners().filter(|(own, _)| own == id) {
+                if servo.knows_fast_reads() && servo.answers(instruction::FAST_SYNC_READ) {
+                    delay_s.get_or_insert(servo.return_delay_s());
+                    let data = servo.read(*address, *length);
+                    let mut answer = head.clone();
+                    answer.extend([servo.error_field(data.as_ref().err().copied()), *id]);
+                    answer.extend(data.unwrap_or_else(|_| vec![0; *length]));
+                    let crc = crc16(crc16(0, &bytes), &answer);
+                    answer.extend_from_slice(&crc.to_le_bytes());
+                    answers.push(answer);
+                }
+            }
+            let is_alone = answers.len() == 1;
+            bytes.extend(self.on_the_wire(answers).unwrap_or_default());
+            if !is_alone {
+                break;
+            }
+            head.clear();
         }
         delay_s.map(|delay_s| Slot { delay_s, answers: vec![bytes] }).into_iter().collect()
     }
@@ -143,15 +155,22 @@ impl Bus {
     fn write_many(&mut self, writes: Vec<(u8, usize, &[u8])>) -> Vec<Slot> {
         for (id, address, data) in writes {
             for (own, servo) in self.listeners() {
-                if own == id {
-                    let _ = servo.write(address, data, Addressed::All);
-                } else if i32::from(id) == servo.item(crate::item::SECONDARY_ID) {
-                    let _ = servo.write(address, data, Addressed::Secondary);
+                if let Some(addressed) = addressed(own, servo, id) {
+                    let _ = servo.write(address, data, addressed);
                 }
             }
         }
         Vec::new()
     }
+}
+
+/// By which of its names a servo that goes by `own` is called; what is above 252 is nobody's name, such as the factory's secondary ID.
+fn addressed(own: u8, servo: &Servo, id: u8) -> Option<Addressed> {
+    if id > MAX_ID {
+        return None;
+    }
+    let is_secondary = i32::from(id) == servo.item(crate::item::SECONDARY_ID);
+    if id == own { Some(Addressed::Own) } else { is_secondary.then_some(Addressed::Secondary) }
 }
 
 fn word(bytes: &[u8]) -> usize {

@@ -7,12 +7,15 @@ use crate::faults::{Connection, Faults};
 use crate::packet::{MAX_ID, Parser};
 use crate::plant::Plant;
 use crate::servo::{PERIOD_S, Servo, ServoSettings, Surroundings};
+use crate::units::BAUD_RATES;
 use dispatch::Slot;
 
 /// Start bit, eight data bits, stop bit.
 const BITS_A_BYTE: f64 = 10.0;
 /// A pause in a packet after which servos wait for the next header.
 const GREATEST_PAUSE_S: f64 = 1.5e-3;
+/// More than what sums of times are off by, and far less than a bit.
+const ROUNDING_S: f64 = 1e-9;
 
 /// Bytes that come to the host.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,10 +60,12 @@ impl Bus {
             }
         }
         let mut servos = servos.iter().map(Servo::new).collect::<Result<Vec<_>, _>>()?;
-        servos.iter_mut().enumerate().for_each(|(i, servo)| servo.settle(plant.shaft(i)));
+        let faults = Faults::new(servos.len());
+        let surroundings = Surroundings { supply_v: faults.supply_v, temperature_c: None };
+        servos.iter_mut().enumerate().for_each(|(i, servo)| servo.settle(plant.shaft(i), surroundings));
         let host_baud = servos.first().map_or(57_600, Servo::baud_rate);
         Ok(Self {
-            faults: Faults::new(servos.len()),
+            faults,
             torques: vec![0.0; servos.len()],
             servos,
             plant,
@@ -77,8 +82,15 @@ impl Bus {
     /// Takes bytes that the host sends now, and says what comes back. Simulated time goes on to the moment at which the last byte is on
     /// the wire, since only then do servos know what they were told.
     pub fn receive(&mut self, bytes: &[u8]) -> Vec<Transmission> {
+        if self.host_baud < BAUD_RATES[0] {
+            return Vec::new();
+        }
         let (arriving, late_s) = self.faults.hurt(bytes.to_vec(), self.faults.to_servos);
-        let starts_s = (self.now_s + late_s).max(self.wire_free_s);
+        let at_s = self.now_s + late_s;
+        // What the host itself has sent before is no answer.
+        let is_answered = self.wire_free_s > self.heard_s;
+        self.faults.talked_over += u64::from(is_answered && at_s + ROUNDING_S < self.wire_free_s);
+        let starts_s = at_s.max(self.wire_free_s);
         let ends_s = starts_s + self.wire_s(bytes.len());
         if self.parser.is_amid() && starts_s - self.heard_s > GREATEST_PAUSE_S {
             self.parser.reset();
@@ -107,6 +119,16 @@ impl Bus {
             self.remainder_s -= PERIOD_S;
             self.step();
         }
+    }
+
+    /// When the last byte that anybody sends is over, in s.
+    pub(crate) fn wire_free_s(&self) -> f64 {
+        self.wire_free_s
+    }
+
+    /// Servos wait for the next header.
+    pub(crate) fn pause(&mut self) {
+        self.parser.reset();
     }
 
     /// Simulated time since the bus was made, in s.
@@ -144,11 +166,10 @@ impl Bus {
         &mut self.faults
     }
 
-    /// The baud rate of the host's port; servos at another hear noise and stay silent.
+    /// The baud rate of the host's port; servos at another hear noise and stay silent. Below the least rate of a servo no time passes
+    /// either, which at 50 baud would be a minute a packet.
     pub fn set_host_baud(&mut self, baud: u32) {
-        if baud > 0 {
-            self.host_baud = baud;
-        }
+        self.host_baud = baud;
     }
 
     /// Whether the host hears itself, as through an adapter that does not switch its receiver off.
@@ -182,11 +203,14 @@ impl Bus {
         }
     }
 
+    /// What several servos that speak at once make of their answers.
+    fn on_the_wire(&mut self, answers: Vec<Vec<u8>>) -> Option<Vec<u8>> {
+        answers.into_iter().reduce(|a, b| self.faults.collide(&a, &b))
+    }
+
     /// Puts what servos say at one time on the wire.
     fn transmit(&mut self, slot: Slot) -> Option<Transmission> {
-        let mut answers = slot.answers.into_iter();
-        let first = answers.next()?;
-        let bytes = answers.fold(first, |a, b| self.faults.collide(&a, &b));
+        let bytes = self.on_the_wire(slot.answers)?;
         let (arriving, late_s) = self.faults.hurt(bytes.clone(), self.faults.to_host);
         self.wire_free_s += slot.delay_s + self.wire_s(bytes.len());
         // What is late waits in the adapter, not on the wire.

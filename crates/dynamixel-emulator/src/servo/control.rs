@@ -20,6 +20,7 @@ impl Servo {
     /// One period: what the motor does to the shaft, in N m counter-clockwise.
     pub(crate) fn control(&mut self, shaft: Shaft, surroundings: Surroundings) -> f64 {
         self.shaft = shaft;
+        self.sense(surroundings);
         if self.booting_s > 0.0 {
             self.booting_s -= PERIOD_S;
             self.motor.drive(None, shaft.velocity_rad_s, PERIOD_S);
@@ -37,7 +38,7 @@ impl Servo {
             self.rest();
         }
         self.motor.drive(voltage, shaft.velocity_rad_s, PERIOD_S);
-        self.protect(surroundings, PERIOD_S);
+        self.protect(PERIOD_S);
         self.motor.torque_n_m()
     }
 

@@ -2,7 +2,7 @@
 
 use super::profile::{Profile, Shape};
 use super::{Ramp, Servo};
-use crate::item;
+use crate::item::{self, Item};
 use crate::memory::{Allowed, POSITION_MODE};
 use crate::units::{ACCELERATION_RAD_S2, PULSE_RAD, VELOCITY_RAD_S};
 
@@ -14,6 +14,12 @@ const TORQUE_BY_GOAL: i32 = 8;
 /// Units of the table in pulses.
 pub(super) const VELOCITY_PULSES_S: f64 = VELOCITY_RAD_S / PULSE_RAD;
 const ACCELERATION_PULSES_S2: f64 = ACCELERATION_RAD_S2 / PULSE_RAD;
+
+/// Whether an item is a gain or part of the profile: what a new operating mode has its initial values of.
+pub(super) fn is_tuning(item: Item) -> bool {
+    let gains = item::VELOCITY_I_GAIN.address..=item::FEEDFORWARD_1ST_GAIN.address;
+    gains.contains(&item.address) || [item::PROFILE_ACCELERATION, item::PROFILE_VELOCITY].contains(&item)
+}
 
 impl Servo {
     /// Executes a write that the rules allow.
@@ -34,7 +40,8 @@ impl Servo {
             }
             self.set_goals_aside();
             if self.item(item::OPERATING_MODE) != mode {
-                self.set_bounds();
+                self.memory.reset(is_tuning);
+                self.set_bounds(|_| true);
             }
             // Goals of the same packet are newer than what has just replaced them.
             let on = self.item(item::TORQUE_ENABLE);
@@ -44,6 +51,8 @@ impl Servo {
         if allowed.writes(item::DRIVE_MODE) {
             self.forget_turns();
         }
+        // Assumed; the e-manual says so of a new mode only.
+        self.set_bounds(|limit| allowed.writes(limit));
         if allowed.writes(item::GOAL_POSITION) && self.has_torque() {
             let goal = f64::from(self.item(item::GOAL_POSITION));
             self.profile = Profile::new(self.profile.desired(), goal, self.shape());
@@ -63,9 +72,7 @@ impl Servo {
 
     /// Goals that leave the shaft where it is: torque that comes on never moves a servo.
     pub(super) fn set_goals_aside(&mut self) {
-        let present = self.present_pulses();
-        self.memory.set(item::GOAL_POSITION, present);
-        self.profile = Profile::at_rest(f64::from(present));
+        self.seat_position();
         (self.ramp, self.integral) = (Ramp::default(), 0.0);
         let mode = self.item(item::OPERATING_MODE);
         for (of_mode, goal) in [(0, item::GOAL_CURRENT), (1, item::GOAL_VELOCITY), (16, item::GOAL_PWM)] {
@@ -75,12 +82,19 @@ impl Servo {
         }
     }
 
-    /// Goals that only bound what the controller does have their limits in a new mode.
-    pub(super) fn set_bounds(&mut self) {
+    /// The position as it is for the goal, and nowhere to go.
+    pub(super) fn seat_position(&mut self) {
+        let present = self.present_pulses();
+        self.memory.set(item::GOAL_POSITION, present);
+        self.profile = Profile::at_rest(f64::from(present));
+    }
+
+    /// Goals that only bound what the controller does become their limits, where those are wanted.
+    pub(super) fn set_bounds(&mut self, wanted: impl Fn(Item) -> bool) {
         for (of_mode, goal, limit) in
             [(0, item::GOAL_CURRENT, item::CURRENT_LIMIT), (16, item::GOAL_PWM, item::PWM_LIMIT)]
         {
-            if self.item(item::OPERATING_MODE) != of_mode {
+            if self.item(item::OPERATING_MODE) != of_mode && wanted(limit) {
                 self.memory.set(goal, self.item(limit));
             }
         }

@@ -1,6 +1,7 @@
 //! What a servo does on an instruction that is for it alone or for all.
 
 use super::Servo;
+use super::goals::is_tuning;
 use crate::item::{self, Item};
 use crate::packet::{Packet, Refusal, instruction};
 use crate::table::RAM;
@@ -26,10 +27,8 @@ const WITH_FAST_READS: i32 = 45;
 
 /// Whether an item is part of a backup.
 pub(super) fn is_backed_up(item: Item) -> bool {
-    let is_gain = (item::VELOCITY_I_GAIN.address..=item::FEEDFORWARD_1ST_GAIN.address).contains(&item.address);
-    let is_profile = [item::PROFILE_ACCELERATION, item::PROFILE_VELOCITY].contains(&item);
     let is_indirect_address = (168..224).contains(&item.address) || (578..634).contains(&item.address);
-    item.address < RAM || is_gain || is_profile || is_indirect_address
+    item.address < RAM || is_tuning(item) || is_indirect_address
 }
 
 impl Servo {
@@ -51,7 +50,7 @@ impl Servo {
             }
             instruction::REG_WRITE => {
                 let (address, data) = address_and_data(parameters)?;
-                self.memory.check(address, data)?;
+                self.check(address, data, addressed)?;
                 self.registered = Some((address, data.to_vec()));
                 self.memory.set(item::REGISTERED_INSTRUCTION, 1);
             }
@@ -63,7 +62,7 @@ impl Servo {
             instruction::FACTORY_RESET => self.factory_reset(parameters, addressed)?,
             instruction::REBOOT => self.reboot(),
             instruction::CLEAR => self.clear(parameters)?,
-            instruction::CONTROL_TABLE_BACKUP if self.knows_fast_reads() => self.back_up(parameters)?,
+            instruction::CONTROL_TABLE_BACKUP if self.knows_fast_reads() => self.back_up(parameters, addressed)?,
             _ => return Err(Refusal::Instruction),
         }
         Ok(Vec::new())
@@ -102,6 +101,7 @@ impl Servo {
 
     fn factory_reset(&mut self, parameters: &[u8], addressed: Addressed) -> Result<(), Refusal> {
         let kept: &[Item] = match parameters {
+            _ if addressed == Addressed::Secondary => return Err(Refusal::Access),
             [0xFF] if addressed == Addressed::All => return Err(Refusal::Instruction),
             [0xFF] => &[],
             [0x01] => &[item::ID],
@@ -121,11 +121,11 @@ impl Servo {
             return Err(Refusal::ResultFail);
         }
         self.forget_turns();
-        self.set_goals_aside();
+        self.seat_position();
         Ok(())
     }
 
-    fn back_up(&mut self, parameters: &[u8]) -> Result<(), Refusal> {
+    fn back_up(&mut self, parameters: &[u8], addressed: Addressed) -> Result<(), Refusal> {
         if parameters != BACKUP && parameters != RESTORE {
             return Err(Refusal::DataRange);
         }
@@ -136,6 +136,9 @@ impl Servo {
             self.backup = Some(self.memory.copy());
             self.memory.set(item::BACKUP_READY, 1);
             return Ok(());
+        }
+        if addressed == Addressed::Secondary {
+            return Err(Refusal::Access);
         }
         let backup = self.backup.as_ref().ok_or(Refusal::ResultFail)?;
         self.memory.restore(backup, |item| item.address < RAM);

@@ -10,7 +10,7 @@ mod protection;
 
 use crate::error::Error;
 use crate::item::{self, Item};
-use crate::memory::{Memory, WATCHDOG_ERROR};
+use crate::memory::{Allowed, Memory, WATCHDOG_ERROR};
 use crate::model::Model;
 use crate::packet::Refusal;
 use crate::plant::Shaft;
@@ -62,6 +62,7 @@ pub struct Servo {
     /// Deaf and without torque until then.
     booting_s: f64,
     is_shut_down: bool,
+    /// Since the power came on, or the last reboot.
     clock_s: f64,
     silence_s: f64,
     shaft: Shaft,
@@ -110,10 +111,12 @@ impl Servo {
     }
 
     /// Takes the shaft as it is when the power comes on for the first time.
-    pub(crate) fn settle(&mut self, shaft: Shaft) {
+    pub(crate) fn settle(&mut self, shaft: Shaft, surroundings: Surroundings) {
         self.shaft = shaft;
+        self.sense(surroundings);
         self.forget_turns();
         self.set_goals_aside();
+        self.set_bounds(|_| true);
         self.publish();
     }
 
@@ -159,7 +162,7 @@ impl Servo {
         f64::from(self.item(item::RETURN_DELAY_TIME)) * RETURN_DELAY_S
     }
 
-    /// Something was heard on the bus, which is all that the watchdog wants.
+    /// An instruction was heard, whomever it is for, which is all that the watchdog wants.
     pub(crate) fn hear(&mut self) {
         self.silence_s = 0.0;
     }
@@ -188,9 +191,11 @@ impl Servo {
         self.memory.set(item::BACKUP_READY, i32::from(self.backup.is_some()));
         self.registered = None;
         self.is_shut_down = false;
+        self.clock_s = 0.0;
         self.overload = Overload::default();
         self.forget_turns();
         self.set_goals_aside();
+        self.set_bounds(|_| true);
         if configuration & 1 != 0 {
             self.memory.set(item::TORQUE_ENABLE, 1);
         }
@@ -208,12 +213,17 @@ impl Servo {
 
     /// A master's write.
     pub(crate) fn write(&mut self, address: usize, data: &[u8], addressed: Addressed) -> Result<(), Refusal> {
+        let allowed = self.check(address, data, addressed)?;
+        self.apply(&allowed);
+        Ok(())
+    }
+
+    fn check(&self, address: usize, data: &[u8], addressed: Addressed) -> Result<Allowed, Refusal> {
         let allowed = self.memory.check(address, data)?;
         if addressed == Addressed::Secondary && allowed.writes_eeprom() {
             return Err(Refusal::Access);
         }
-        self.apply(&allowed);
-        Ok(())
+        Ok(allowed)
     }
 
     /// A master's read.

@@ -39,14 +39,19 @@ impl Servo {
         }
     }
 
-    pub(super) fn protect(&mut self, surroundings: Surroundings, dt_s: f64) {
+    /// Measures voltage and temperature.
+    pub(super) fn sense(&mut self, surroundings: Surroundings) {
         if let Some(forced) = surroundings.temperature_c {
             self.motor.temperature_c = forced;
         }
-        let voltage = rounded(surroundings.supply_v / VOLTAGE_V);
-        self.memory.set(item::PRESENT_INPUT_VOLTAGE, voltage);
-        let temperature = rounded(self.motor.temperature_c).clamp(0, 255);
-        self.memory.set(item::PRESENT_TEMPERATURE, temperature);
+        self.memory
+            .set(item::PRESENT_INPUT_VOLTAGE, rounded(surroundings.supply_v / VOLTAGE_V).clamp(0, i32::from(i16::MAX)));
+        self.memory.set(item::PRESENT_TEMPERATURE, rounded(self.motor.temperature_c).clamp(0, 255));
+    }
+
+    pub(super) fn protect(&mut self, dt_s: f64) {
+        let voltage = self.item(item::PRESENT_INPUT_VOLTAGE);
+        let temperature = self.item(item::PRESENT_TEMPERATURE);
         if !(self.item(item::MIN_VOLTAGE_LIMIT)..=self.item(item::MAX_VOLTAGE_LIMIT)).contains(&voltage) {
             self.raise(HardwareError::InputVoltage);
         }
