@@ -11,7 +11,7 @@ use crate::sdk::{Miss, Sdk, SyncRead, SyncWrite, load};
 /// once in 600 000 times.
 const RETRIES: u32 = 12;
 /// So often in the midst of a motion.
-const QUICK_TRIES: u32 = 3;
+const QUICK_TRIES: u32 = 6;
 /// After a miss, an answer that comes late after all must not be taken for that to the next question.
 const SETTLE: Duration = Duration::from_millis(10);
 /// The bit of a status packet's error that tells of a hardware error; what was asked for is done all the same.
@@ -225,21 +225,19 @@ impl Bus {
 
     /// Looks quickly, in the midst of a motion, which servo it is that does not answer.
     pub(crate) fn find_silent(&mut self, ids: &[u8]) -> HilError {
-        let mut silent = Vec::new();
-        for &id in ids {
-            let mut answered = Ok(None);
-            for _ in 0..QUICK_TRIES {
+        let mut silent = ids.to_vec();
+        // Every round asks those again that did not answer in the one before: one lost answer is no silence.
+        for _ in 0..QUICK_TRIES {
+            let mut still = Vec::new();
+            for id in silent {
                 let answer = self.sdk.ping(id);
-                answered = self.once(answer);
-                if !matches!(answered, Ok(None)) {
-                    break;
+                match self.once(answer) {
+                    Err(lost) => return lost,
+                    Ok(None) => still.push(id),
+                    Ok(Some(_)) => {}
                 }
             }
-            match answered {
-                Err(lost) => return lost,
-                Ok(None) => silent.push(id),
-                Ok(Some(_)) => {}
-            }
+            silent = still;
         }
         if silent.len() == ids.len() {
             return self.all_silent();
