@@ -12,9 +12,10 @@
 //! The control tables lie in `tables/` as the [e-manual](https://emanual.robotis.com/docs/en/dxl/x/xm540-w270/) has them. Where it is
 //! silent, the code says "Assumed": units of the gains, the overload rule, heat, inertia and friction of the motor, what In-Position
 //! means, how long a servo boots. Behind a servo that is missing in a sync read, all are silent; a broadcast ping is answered in the
-//! order of IDs. Torque that comes on, and a new operating mode, take the position as it is for the goal, and 0 for the current, velocity or
-//! PWM that the mode controls, where the e-manual has the limit; the gains of every mode are the factory's. Not emulated: Protocol 1.0, the external ports of the
-//! XM540, the sync cable of dual mode, backlash.
+//! order of IDs. Torque that comes on, and a new operating mode, take the position as it is for the goal, and 0 for the current, velocity
+//! or PWM that the mode controls, where the e-manual has the limit; the gains of every mode are the factory's. Bounds follow their limits
+//! when those are written, and only 0 takes the watchdog's error away. Not emulated: a host that talks over an answer (it is counted, and
+//! waits), Protocol 1.0, the external ports of the XM540, the sync cable of dual mode, backlash.
 //!
 //! ```
 //! use dynamixel_emulator::packet::{Packet, instruction};

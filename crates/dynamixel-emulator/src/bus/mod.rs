@@ -87,9 +87,8 @@ impl Bus {
         }
         let (arriving, late_s) = self.faults.hurt(bytes.to_vec(), self.faults.to_servos);
         let at_s = self.now_s + late_s;
-        // What the host itself has sent before is no answer.
-        let is_answered = self.wire_free_s > self.heard_s;
-        self.faults.talked_over += u64::from(is_answered && at_s + ROUNDING_S < self.wire_free_s);
+        // What the host itself has sent is over by now; what is not are answers.
+        self.faults.talked_over += u64::from(at_s + ROUNDING_S < self.wire_free_s);
         let starts_s = at_s.max(self.wire_free_s);
         let ends_s = starts_s + self.wire_s(bytes.len());
         if self.parser.is_amid() && starts_s - self.heard_s > GREATEST_PAUSE_S {
