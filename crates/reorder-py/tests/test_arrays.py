@@ -69,8 +69,8 @@ def test_manifolds_are_values():
     assert reorder.SE3(0.5).injectivity_radius == 0.5 * np.pi and reorder.Rn(2).injectivity_radius == np.inf
 
 
-def ticks_during(call):
-    """How often this thread gets to run between begin and end of a call in another."""
+def longest_wait_during(call):
+    """The longest time that this thread does not get to run while another is in a call, as a share of the call."""
     span = []
 
     def work():
@@ -84,7 +84,8 @@ def ticks_during(call):
         ticks.append(time.perf_counter())
         time.sleep(1e-3)
     thread.join()
-    return sum(span[0] < tick < span[1] for tick in ticks), span[1] - span[0]
+    begin, end = span
+    return max(np.diff([begin, *(tick for tick in ticks if begin < tick < end), end])) / (end - begin)
 
 
 def test_other_threads_run_during_every_long_call():
@@ -101,9 +102,6 @@ def test_other_threads_run_during_every_long_call():
         "plan": lambda: reorder.plan(recorded.poses, "ur5e"),
     }
     for name, call in calls.items():
-        ticks, seconds = ticks_during(call)
-        # A tick takes a millisecond, on a busy machine ten; where the interpreter is kept there is one before, and one after.
-        assert ticks >= 3, (name, ticks, seconds)
+        assert longest_wait_during(call) < 0.5, name
     numbers = np.random.default_rng(1).random(400_000).tolist()
-    ticks, seconds = ticks_during(lambda: sorted(numbers))
-    assert ticks <= 2 and seconds > 0.01, "a call that keeps the interpreter shows"
+    assert longest_wait_during(lambda: sorted(numbers)) > 0.5, "a call that keeps the interpreter shows"
