@@ -19,6 +19,7 @@ from std_msgs.msg import String
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from conversation import check, run, wait_until
+from goals import goals_of
 from leave import leave
 
 LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -68,16 +69,7 @@ def converse(node):
     def here():
         return np.array(states[-1].position)
 
-    def send(trajectory):
-        goal, feedback = FollowJointTrajectory.Goal(trajectory=trajectory), []
-        sent = client.send_goal_async(goal, feedback_callback=lambda message: feedback.append(message.feedback))
-        wait_until(node, sent.done, "The answer to a goal")
-        return sent.result(), feedback
-
-    def result(handle):
-        asked = handle.get_result_async()
-        wait_until(node, asked.done, "The result of a goal")
-        return asked.result()
+    send, result = goals_of(node, client)
 
     def arrive(where):
         wait_until(node, lambda: states and np.abs(here() - where).max() < THERE_RAD, f"The joints at {where}")

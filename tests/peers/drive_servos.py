@@ -15,6 +15,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from conversation import check, run, wait_until
+from goals import goals_of
 from drive_arm import LATCHED, move
 from leave import leave
 
@@ -47,16 +48,7 @@ def converse(node):
         )
         return here()
 
-    def send(trajectory):
-        goal, feedback = FollowJointTrajectory.Goal(trajectory=trajectory), []
-        sent = client.send_goal_async(goal, feedback_callback=lambda message: feedback.append(message.feedback))
-        wait_until(node, sent.done, "The answer to a goal")
-        return sent.result(), feedback
-
-    def result(handle):
-        asked = handle.get_result_async()
-        wait_until(node, asked.done, "The result of a goal")
-        return asked.result()
+    send, result = goals_of(node, client)
 
     # A goal is executed, with feedback, and the joints are where it says.
     home = rest()
