@@ -69,8 +69,14 @@ impl EmulatedPort {
         f(&mut lock(&self.bus))
     }
 
-    /// Closes the port as if its cable was pulled: whoever has it open is hung up on.
-    pub fn unplug(self) {}
+    /// Closes the port as if its cable was pulled: whoever has it open is hung up on. The bus may come back behind another port.
+    #[must_use]
+    pub fn unplug(self) -> Bus {
+        let bus = Arc::clone(&self.bus);
+        drop(self);
+        let bus = Arc::into_inner(bus).expect("the server, which shared it, has ended");
+        bus.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 impl Drop for EmulatedPort {

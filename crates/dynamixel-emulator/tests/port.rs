@@ -125,7 +125,7 @@ fn unplugging_hangs_up_on_the_host() {
     let path = port.path().to_owned();
     let mut host = open(&port, 57_600);
     assert!(ping(host.as_mut(), 1).is_ok());
-    port.unplug();
+    let _bus = port.unplug();
     let error = ping(host.as_mut(), 1).unwrap_err();
     assert_ne!(error.kind(), ErrorKind::TimedOut, "it is told, not kept waiting");
     drop(host);

@@ -8,6 +8,7 @@ use crate::config::Config;
 use crate::error::{HilError, Result};
 use crate::joints::Joints;
 use crate::link::Link;
+use crate::search::Search;
 use crate::servo_state::ServoState;
 use crate::simulation::Simulation;
 use crate::statistics::StepTimes;
@@ -45,6 +46,8 @@ pub struct DynamixelArm {
     step_times: StepTimes,
     watchman: Watchman,
     fault: Option<HilError>,
+    /// Some servos do not answer: the arm is led to rest while it is found out which.
+    search: Option<Search>,
     port_is_lost: bool,
     /// What is to be there as long as the arm is.
     simulation: Option<Simulation>,
@@ -72,6 +75,7 @@ impl DynamixelArm {
             stepped_at_s: clock(),
             step_times: StepTimes::default(),
             fault: None,
+            search: None,
             port_is_lost: false,
             simulation: None,
             clock,
@@ -157,12 +161,20 @@ impl DynamixelArm {
         self.step_times.note(gap_s);
         let moves = self.controller.ends_at_s() > self.now_s;
         if gap_s > self.config.watch.pause_s && moves && self.fault.is_none() {
+            self.search = None;
             // The servos have long come to rest at the last goal: that is where to go on from, and not where the motion would be by now.
             let heard = (0..PAUSE_TRIES).any(|_| self.link.hear().is_ok());
             let [measured, _] = self.measured();
             let stands = if heard { measured } else { self.desired(self.now_s - 1.0 / self.config.rate_hz) };
             self.controller.rest_at(self.now_s, &stands);
             self.fail(HilError::Paused { pause_s: gap_s });
+        }
+        if let Some(mut search) = self.search.take() {
+            match self.send().and_then(|()| search.ask(&mut self.link.bus)) {
+                Ok(None) => self.search = Some(search),
+                Ok(Some(why)) | Err(why) => self.stopped_for(why),
+            }
+            return;
         }
         match self.send().and_then(|()| self.link.hear()) {
             Ok(()) => {
@@ -210,8 +222,8 @@ impl DynamixelArm {
             None => {}
             // Somebody does not answer: who?
             Some(HilError::GroupMissed) => {
-                let why = self.link.bus.find_silent(&self.config.ids());
-                self.fail(why);
+                self.controller.stop(self.now_s);
+                self.search = Some(Search::among(self.config.ids()));
             }
             Some(why) => self.fail(why),
         }
@@ -219,11 +231,16 @@ impl DynamixelArm {
 
     /// Stops on the path, along which servos that do not answer may still hear that they are led.
     fn fail(&mut self, why: HilError) {
-        self.note_lost_port(&why);
         if self.fault.is_none() {
             self.controller.stop(self.now_s);
-            self.fault = Some(why);
         }
+        self.stopped_for(why);
+    }
+
+    /// Keeps the first fault of an arm that has stopped, or does so.
+    fn stopped_for(&mut self, why: HilError) {
+        self.note_lost_port(&why);
+        self.fault.get_or_insert(why);
     }
 
     fn note_lost_port(&mut self, why: &HilError) {
@@ -277,6 +294,9 @@ impl Arm for DynamixelArm {
         if let Some(fault) = &self.fault {
             return Err(Refused::Faulty(fault.to_string()));
         }
+        if self.search.is_some() {
+            return Err(Refused::Faulty(HilError::GroupMissed.to_string()));
+        }
         let mut next = self.controller.clone();
         let number = next.play(self.now_s, starts_at_s, trajectory)?;
         self.check(&next, starts_at_s.unwrap_or(self.now_s).max(self.now_s))?;
@@ -291,7 +311,12 @@ impl Arm for DynamixelArm {
     fn present(&self) -> Present {
         let [position, velocity] = self.measured();
         let fault = self.fault.as_ref().map(ToString::to_string);
-        Present { fault, ..self.controller.present(self.now_s, position, velocity) }
+        let mut present = Present { fault, ..self.controller.present(self.now_s, position, velocity) };
+        if self.search.is_some() {
+            // Whoever waits for the end of the motion waits until it is known why it stops.
+            present.ends_at_s = present.ends_at_s.max(self.now_s + 1.0 / self.config.rate_hz);
+        }
+        present
     }
 
     fn recover(&mut self) -> std::result::Result<(), Refused> {

@@ -10,8 +10,6 @@ use crate::sdk::{Miss, Sdk, SyncRead, SyncWrite, load};
 /// How often a read, or a write that may be repeated, is tried again. Where every fifth packet is lost each way, 13 tries all fail
 /// once in 600 000 times.
 const RETRIES: u32 = 12;
-/// So often in the midst of a motion.
-const QUICK_TRIES: u32 = 6;
 /// After a miss, an answer that comes late after all must not be taken for that to the next question.
 const SETTLE: Duration = Duration::from_millis(10);
 /// The bit of a status packet's error that tells of a hardware error; what was asked for is done all the same.
@@ -223,27 +221,13 @@ impl Bus {
         group.0.fast
     }
 
-    /// Looks quickly, in the midst of a motion, which servo it is that does not answer.
-    pub(crate) fn find_silent(&mut self, ids: &[u8]) -> HilError {
-        let mut silent = ids.to_vec();
-        // Every round asks those again that did not answer in the one before: one lost answer is no silence.
-        for _ in 0..QUICK_TRIES {
-            let mut still = Vec::new();
-            for id in silent {
-                let answer = self.sdk.ping(id);
-                match self.once(answer) {
-                    Err(lost) => return lost,
-                    Ok(None) => still.push(id),
-                    Ok(Some(_)) => {}
-                }
-            }
-            silent = still;
-        }
-        if silent.len() == ids.len() {
-            return self.all_silent();
-        }
-        // It may have come back meanwhile.
-        silent.first().map_or(HilError::GroupMissed, |&id| HilError::Silent { servo: self.label(id) })
+    /// Asks a servo once whether it is there, which takes a few milliseconds at most.
+    ///
+    /// # Errors
+    /// Where the port is gone.
+    pub(crate) fn answers(&mut self, id: u8) -> Result<bool> {
+        let answer = self.sdk.ping(id);
+        Ok(self.once(answer)?.is_some())
     }
 
     /// Counts one exchange; nothing where it missed.

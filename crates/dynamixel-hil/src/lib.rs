@@ -37,6 +37,7 @@ mod model;
 mod plant;
 pub mod register;
 mod sdk;
+mod search;
 mod servo_state;
 mod simulation;
 mod statistics;

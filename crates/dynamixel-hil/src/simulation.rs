@@ -15,9 +15,17 @@ use crate::plant::{ArmPlant, PlantView};
 /// An emulated bus with the arm behind it. It ends when its last copy does.
 #[derive(Clone)]
 pub struct Simulation {
-    port: Arc<Mutex<Option<EmulatedPort>>>,
+    cable: Arc<Mutex<Cable>>,
     path: PathBuf,
+    timing: Timing,
     view: PlantView,
+}
+
+/// Between the bus and the computer.
+enum Cable {
+    Plugged(EmulatedPort),
+    /// `None` for a moment only.
+    Unplugged(Option<Box<Bus>>),
 }
 
 impl Simulation {
@@ -38,10 +46,10 @@ impl Simulation {
         let bus = Bus::new(servos.collect(), Box::new(plant)).map_err(failed)?;
         let port = EmulatedPort::open(bus, timing).map_err(failed)?;
         let path = port.path().to_path_buf();
-        Ok(Self { port: Arc::new(Mutex::new(Some(port))), path, view })
+        Ok(Self { cable: Arc::new(Mutex::new(Cable::Plugged(port))), path, timing, view })
     }
 
-    /// What a master opens.
+    /// What a master opens, as long as the cable is not pulled.
     pub fn path(&self) -> String {
         self.path.display().to_string()
     }
@@ -53,12 +61,34 @@ impl Simulation {
 
     /// Looks at the bus or changes it, between two packets; `None` once it is unplugged.
     pub fn with_bus<R>(&self, look: impl FnOnce(&mut Bus) -> R) -> Option<R> {
-        self.lock().as_ref().map(|port| port.with_bus(look))
+        match &*self.lock() {
+            Cable::Plugged(port) => Some(port.with_bus(look)),
+            Cable::Unplugged(_) => None,
+        }
     }
 
-    /// Pulls the cable of the port.
+    /// Pulls the cable of the port. The servos keep their power, and what they were told; their time stands.
     pub fn unplug(&self) {
-        self.lock().take();
+        let mut cable = self.lock();
+        if let Cable::Plugged(port) = std::mem::replace(&mut *cable, Cable::Unplugged(None)) {
+            *cable = Cable::Unplugged(Some(Box::new(port.unplug())));
+        }
+    }
+
+    /// Puts the cable back. The system may give the port another name: what a master opens from now on.
+    ///
+    /// # Errors
+    /// Where it is in place, or the system has no pseudo-terminal.
+    pub fn plug_in(&self) -> Result<PathBuf> {
+        let mut cable = self.lock();
+        let Cable::Unplugged(bus) = &mut *cable else {
+            return Err(HilError::Emulator("the cable is in place".to_owned()));
+        };
+        let bus = bus.take().ok_or_else(|| HilError::Emulator("the bus is gone".to_owned()))?;
+        let port = EmulatedPort::open(*bus, self.timing).map_err(|error| HilError::Emulator(error.to_string()))?;
+        let path = port.path().to_path_buf();
+        *cable = Cable::Plugged(port);
+        Ok(path)
     }
 
     /// The time of the bus, which stands once it is unplugged.
@@ -72,8 +102,8 @@ impl Simulation {
         Box::new(move || (last.lock().unwrap_or_else(PoisonError::into_inner))())
     }
 
-    fn lock(&self) -> MutexGuard<'_, Option<EmulatedPort>> {
-        self.port.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self) -> MutexGuard<'_, Cable> {
+        self.cable.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -59,9 +59,15 @@ impl Lockstep {
     }
 
     pub(crate) fn on(simulation: Simulation) -> Result<Self, HilError> {
+        let path = simulation.path();
+        Self::at(simulation, &path)
+    }
+
+    /// By another name of the simulation's port.
+    pub(crate) fn at(simulation: Simulation, path: &str) -> Result<Self, HilError> {
         let config = config();
         let period_s = 1.0 / config.rate_hz;
-        let arm = DynamixelArm::open(config, &simulation.path(), simulation.clock())?;
+        let arm = DynamixelArm::open(config, path, simulation.clock())?;
         let origin_s = simulation.with_bus(|bus| bus.now_s()).expect("it is plugged in");
         Ok(Self { arm, simulation, period_s, steps: 0, origin_s, fastest_rad_s: 0.0, worst_rad: 0.0 })
     }
