@@ -20,7 +20,7 @@ const OTHER_TURNINGS: [f64; 3] = [0.0, 8.0, 1.0];
 /// Doubts that one other search may give.
 const MOST_DOUBTS: usize = 20;
 /// After so many doubts no other search is made: each costs as much as the order itself.
-const ENOUGH_DOUBTS: usize = 8;
+pub(crate) const ENOUGH_DOUBTS: usize = 8;
 
 /// What other searches say to an order.
 pub(crate) struct Agreement {

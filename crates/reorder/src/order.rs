@@ -3,7 +3,7 @@
 use se3_geom::Manifold;
 use tracing::debug_span;
 
-use crate::agreement::{Variant, examine_sequence, of_trees};
+use crate::agreement::{ENOUGH_DOUBTS, Variant, examine_sequence, of_trees};
 use crate::certificate::Certificate;
 use crate::components::{Split, split};
 use crate::curve::Curve;
@@ -71,11 +71,19 @@ pub(crate) fn order_among<M: Manifold>(
     }
     let anywhere = Options { start: None, ..*options };
     let recovery = recover(manifold, points, &anywhere, options.start)?;
-    let mut examined = examine_tree(manifold, points, &recovery);
-    let of_weight = of_trees(&recovery, variants, points, &anywhere)?;
-    let stable = of_weight.is_empty();
+    let branches = doubts::of_tree(&recovery.distinct.tree);
+    // The tree at each other weight costs as much as the order itself, which nobody can trust where the first one branches all over.
+    let weighed = if branches.len() < ENOUGH_DOUBTS { variants } else { &[] };
+    // Entered here as well: whoever listens on this thread only would not hear of it from another.
+    let phase = debug_span!("certificate").entered();
+    let (mut examined, of_weight) = rayon::join(
+        || examine_tree(manifold, points, &recovery, branches),
+        || of_trees(&recovery, weighed, points, &anywhere),
+    );
+    drop(phase);
+    let of_weight = of_weight?;
+    let tree_is_stable = (!weighed.is_empty()).then_some(of_weight.is_empty());
     examined.doubts.searchable.extend(of_weight);
-    let tree_is_stable = (!variants.is_empty()).then_some(stable);
     let joined = options.topology == TopologyChoice::Closed && is_clean_arc(manifold, points, &recovery);
     let mendable = !examined.doubts.searchable.is_empty()
         || recovery.distinct.groups.len() < points.len() && !examined.doubts.firm.is_empty();
@@ -246,9 +254,8 @@ impl Examined {
     }
 }
 
-fn examine_tree<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recovery) -> Examined {
+fn examine_tree<M: Manifold>(manifold: &M, points: &[M::Point], recovery: &Recovery, branches: Vec<Doubt>) -> Examined {
     let tree = &recovery.distinct.tree;
-    let branches = doubts::of_tree(tree);
     if !branches.is_empty() {
         let longest = tree.edge_weights().copied().fold(0.0, f64::max);
         let certificate = Certificate::of_no_curve(manifold, longest);

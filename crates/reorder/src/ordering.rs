@@ -167,7 +167,7 @@ pub struct Ordering {
     /// How far it may be trusted: of several curves the least.
     pub verdict: Verdict,
     /// Whether the order is the same when a radian counts for half and for twice as many metres; `None` where no such weight
-    /// exists or was tried.
+    /// exists or was tried: not where so much else speaks against the order.
     pub weight_stable: Option<bool>,
     /// Metres that one radian counted for; `None` on manifolds without that weight.
     pub metres_per_radian: Option<f64>,

@@ -74,12 +74,12 @@ pub(crate) fn sweep<M: Manifold>(curve: &Curve<M>, beyond_ends: [f64; 2]) -> Swe
     let farther_than_sparse = if exact { 1.0 / LOCAL_EPSILON } else { THINNED_STEPS };
     let wanted: Vec<f64> = vertices.iter().map(|v| farther_than_sparse * v.farther_gap).collect();
     let rival_distances = vec![f64::INFINITY; n];
-    let mut search = Disputes { curve, vertices: &vertices, found, rival_distances, exact };
-    Runs::new(curve, &positions, &wanted).join(&mut search);
+    let curvature_radius = found.curvature_radius;
+    let mut search = Disputes { curve, vertices: &vertices, wanted: &wanted, found, rival_distances, exact };
+    let thinned = || if exact { curvature_radius } else { thinned_reach(curve, &vertices, curvature_radius) };
+    let ((), thinned) = rayon::join(|| Runs::new(curve, &positions, &wanted).join(&mut search), thinned);
     let mut found = search.found;
-    if !exact {
-        found.reach = thinned_reach(curve, &vertices, found.reach);
-    }
+    found.reach = found.reach.min(thinned);
     found
 }
 
@@ -91,7 +91,7 @@ fn thinned_reach<M: Manifold>(curve: &Curve<M>, vertices: &[Vertex<M::Tangent>],
         let gaps: Vec<f64> = kept.windows(2).map(|w| curve.distance(w[0], w[1])).collect();
         let around = |k: usize| gaps[k.saturating_sub(1)..(k + 1).min(gaps.len())].iter().copied().fold(0.0, f64::max);
         let wanted: Vec<f64> = (0..kept.len()).map(|k| THINNED_STEPS * around(k)).collect();
-        let mut search = SmallestBall { curve, vertices, reach, step, coarse };
+        let mut search = SmallestBall { curve, vertices, wanted: &wanted, reach, step, coarse };
         Runs::new(curve, &kept, &wanted).join(&mut search);
         reach = search.reach;
         if coarse {
@@ -105,6 +105,7 @@ fn thinned_reach<M: Manifold>(curve: &Curve<M>, vertices: &[Vertex<M::Tangent>],
 struct Disputes<'a, 'b, M: Manifold> {
     curve: &'a Curve<'b, M>,
     vertices: &'a [Vertex<M::Tangent>],
+    wanted: &'a [f64],
     found: Sweep,
     rival_distances: Vec<f64>,
     exact: bool,
@@ -115,7 +116,8 @@ impl<M: Manifold> PairSearch for Disputes<'_, '_, M> {
         if self.exact { 2.0 * self.found.reach } else { 0.0 }
     }
     fn visit(&mut self, i: usize, j: usize, distance: f64) {
-        let across = self.exact || j - i > ALONG_STEPS;
+        // Farther pairs come only as it happens, and the thinned curves have their like.
+        let across = self.exact || (j - i > ALONG_STEPS && distance <= self.wanted[i].max(self.wanted[j]));
         let Self { curve, vertices, found, .. } = self;
         if curve.are_neighbours(i, j) {
             return;
@@ -138,6 +140,8 @@ impl<M: Manifold> PairSearch for Disputes<'_, '_, M> {
 struct SmallestBall<'a, 'b, M: Manifold> {
     curve: &'a Curve<'b, M>,
     vertices: &'a [Vertex<M::Tangent>],
+    /// Of the positions that are kept.
+    wanted: &'a [f64],
     reach: f64,
     step: usize,
     coarse: bool,
@@ -148,7 +152,9 @@ impl<M: Manifold> PairSearch for SmallestBall<'_, '_, M> {
         if self.coarse { 2.0 * self.reach } else { 0.0 }
     }
     fn visit(&mut self, i: usize, j: usize, distance: f64) {
-        if (self.coarse || j - i > ALONG_STEPS * self.step) && distance < 2.0 * self.reach {
+        let wanted = |k: usize| self.wanted[k / self.step];
+        let across = self.coarse || (j - i > ALONG_STEPS * self.step && distance <= wanted(i).max(wanted(j)));
+        if across && distance < 2.0 * self.reach {
             for (at, other) in [(i, j), (j, i)] {
                 let radius = self.vertices[at].tangent.and_then(|tangent| ball_radius(self.curve, tangent, at, other));
                 self.reach = self.reach.min(radius.unwrap_or(f64::INFINITY));

@@ -39,7 +39,7 @@ pub(crate) fn compute() -> Result<Numbers, Box<dyn Error>> {
 }
 
 /// `bow`: how far the first guess swings out in the plane, as a part of the distance there.
-fn case<H: Fn(f64, f64) -> HeightJet>(
+fn case<H: Fn(f64, f64) -> HeightJet + Sync>(
     patch: &MongePatch<H>,
     [p, q]: [Vector2<f64>; 2],
     bow: f64,
@@ -53,7 +53,7 @@ fn case<H: Fn(f64, f64) -> HeightJet>(
     Ok(Case { guess, guess_length, geodesic, geodesic_length: patch.norm(&p, velocity) })
 }
 
-fn panel<H: Fn(f64, f64) -> HeightJet>(title: &str, patch: &MongePatch<H>, side: f64, case: &Case) -> Panel {
+fn panel<H: Fn(f64, f64) -> HeightJet + Sync>(title: &str, patch: &MongePatch<H>, side: f64, case: &Case) -> Panel {
     let mut panel =
         Panel::new(format!("{title}: guess {:.4}, geodesic {:.4}", case.guess_length, case.geodesic_length));
     let view = View::from_angles(VIEW[0], VIEW[1]);

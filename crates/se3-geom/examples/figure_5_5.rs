@@ -77,7 +77,7 @@ pub(crate) fn compute() -> Result<Numbers, Box<dyn Error>> {
 }
 
 /// How long the geodesic with this unit velocity takes until x = 0, by bisection.
-fn length_to_centre<H: Fn(f64, f64) -> HeightJet>(
+fn length_to_centre<H: Fn(f64, f64) -> HeightJet + Sync>(
     patch: &MongePatch<H>,
     start: &Vector2<f64>,
     velocity: Vector2<f64>,

@@ -28,7 +28,7 @@ use crate::manifold::{LogError, Manifold};
 /// let quarter = 1.211_056_027_568_459_5; // E(3/4), the complete elliptic integral
 /// assert!((ellipse.exp(&vertex, Vector2::new(0.0, quarter)) - co_vertex).norm() < 1e-10);
 /// ```
-pub trait Constraint<const N: usize, const K: usize> {
+pub trait Constraint<const N: usize, const K: usize>: Sync {
     /// F(x).
     fn value(&self, x: &SVector<f64, N>) -> SVector<f64, K>;
     /// DF(x).

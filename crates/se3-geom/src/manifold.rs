@@ -71,11 +71,11 @@ pub(crate) fn if_finite<T, const N: usize>(logarithm: T, flat: &SVector<f64, N>)
 /// A Riemannian manifold with its metric.
 ///
 /// The required methods are the minimum; everything else is deduced once, here.
-pub trait Manifold {
+pub trait Manifold: Sync {
     /// A point, as plain data.
-    type Point: Clone + std::fmt::Debug;
+    type Point: Clone + std::fmt::Debug + Send + Sync;
     /// A tangent vector, in the coordinates that the implementor documents.
-    type Tangent: Tangent + std::fmt::Debug;
+    type Tangent: Tangent + std::fmt::Debug + Send + Sync;
 
     /// The point reached from `p` after unit time along the geodesic with initial velocity `v`.
     fn exp(&self, p: &Self::Point, v: Self::Tangent) -> Self::Point;

@@ -60,7 +60,7 @@ pub struct MongePatch<H> {
     injectivity_radius: f64,
 }
 
-impl<H: Fn(f64, f64) -> HeightJet> MongePatch<H> {
+impl<H: Fn(f64, f64) -> HeightJet + Sync> MongePatch<H> {
     /// The graph of `height`, smooth on the whole plane, with a lower bound of its injectivity radius.
     ///
     /// π/κ is one, with κ the greatest absolute principal curvature (κ ≤ ‖H‖): conjugate points lie at least π/κ apart
@@ -82,7 +82,7 @@ impl<H: Fn(f64, f64) -> HeightJet> MongePatch<H> {
     }
 }
 
-impl<H: Fn(f64, f64) -> HeightJet> Connection<2> for MongePatch<H> {
+impl<H: Fn(f64, f64) -> HeightJet + Sync> Connection<2> for MongePatch<H> {
     fn parallel_rate(&self, x: &Vector2<f64>, u: &Vector2<f64>, w: &Vector2<f64>) -> Vector2<f64> {
         let HeightJet { gradient, hessian, .. } = (self.height)(x.x, x.y);
         gradient * (-u.dot(&(hessian * w)) / (1.0 + gradient.norm_squared()))
@@ -99,7 +99,7 @@ impl<H: Fn(f64, f64) -> HeightJet> Connection<2> for MongePatch<H> {
     }
 }
 
-impl<H: Fn(f64, f64) -> HeightJet> Manifold for MongePatch<H> {
+impl<H: Fn(f64, f64) -> HeightJet + Sync> Manifold for MongePatch<H> {
     type Point = Vector2<f64>;
     type Tangent = Vector2<f64>;
 
