@@ -1,12 +1,13 @@
 //! One bag: its sets put in order, and the bag that is made of them.
 
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use planner::pose_bag::msg::{
     Header, JointState, MarkerArray, Path as PathMessage, PoseArray, PoseStamped, Text, Time,
 };
-use planner::pose_bag::{BagReader, BagWriter, OfferedQos, PoseSet, msg, recover_poses};
+use planner::pose_bag::{BagReader, BagWriter, Compression, OfferedQos, PoseSet, msg, recover_poses};
 use planner::reorder::{Ordering, order_weighted};
 use planner::se3_geom::{Pose, Se3};
 use planner::{Config, Drawn, Plan, Request, interpolate, path_along, plan, trajectory_message};
@@ -19,6 +20,9 @@ use crate::task::Task;
 
 /// The topic on which an output says what it was made of and how.
 const REPORT: &str = "/reorder/report";
+
+/// What the header of every output says.
+pub(crate) const LIBRARY: &str = "reorder replay";
 
 /// What an output holds about itself.
 #[derive(Serialize, Deserialize)]
@@ -53,7 +57,8 @@ fn caught<T>(name: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, 
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(fault()))
 }
 
-/// What an earlier run found, where its output is whole and would be the same again.
+/// What an earlier run found, where its output is whole and would be the same again. What was lost then may be there by now: a disk that
+/// was full, a share that was gone.
 fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
     let mut report: Option<Report> = None;
     let losses = BagReader::open(output).ok()?.for_each(&mut |message| {
@@ -63,7 +68,7 @@ fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
         Ok(())
     });
     let report = report.filter(|_| losses.is_ok_and(|losses| losses.is_empty()))?;
-    let is_same = report.settings == task.settings() && report.input == input.files;
+    let is_same = report.settings == task.settings() && report.input == input.files && report.summary.lost.is_empty();
     is_same.then(|| BagSummary {
         bag: input.path.display().to_string(),
         output: Some(output.display().to_string()),
@@ -73,13 +78,17 @@ fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
 }
 
 fn replay_anew(input: &Input, output: Option<&Path>, task: &Task, advance: &dyn Fn(f64)) -> Result<BagSummary, String> {
-    let mut lost = Vec::new();
+    let mut lost: Vec<String> = Vec::new();
     let mut sets = Vec::new();
     for selection in task.selections() {
         let (found, losses) = recover_poses(&input.path, &selection).map_err(|error| error.to_string())?;
         sets.extend(found);
-        // Every pass over a bag meets the same damage.
-        lost = losses.iter().map(ToString::to_string).collect();
+        // Every pass over a bag meets the same damage, but not the same accidents.
+        for loss in losses.iter().map(ToString::to_string) {
+            if !lost.contains(&loss) {
+                lost.push(loss);
+            }
+        }
     }
     let count = sets.len() as f64;
     let replayed: Vec<Replayed> = (1..)
@@ -117,12 +126,14 @@ fn replay_set(set: PoseSet, task: &Task) -> Replayed {
         score: None,
         trajectory: None,
         refused: None,
+        bad_input: false,
     };
     // Stamps play no part in it.
     let ordering = match order_weighted::<Se3>(&set.poses, task.weight, &task.options()) {
         Ok(ordering) => ordering,
         Err(error) => {
             summary.error = Some(error.to_string());
+            summary.bad_input = true;
             return Replayed { set, summary, ordering: None, curve: Vec::new(), plan: None };
         }
     };
@@ -150,6 +161,7 @@ fn replay_set(set: PoseSet, task: &Task) -> Replayed {
         }
         Some(Err(refusal)) => {
             summary.refused = Some(refusal.to_string());
+            summary.bad_input = refusal.is_bad_input();
             (None, interpolate(&set.poses, &ordering, metres_per_radian).map(|spline| path_along(&spline)))
         }
         None => (None, interpolate(&set.poses, &ordering, metres_per_radian).map(|spline| path_along(&spline))),
@@ -168,13 +180,17 @@ fn write(
     replayed: &[Replayed],
     summary: &BagSummary,
 ) -> Result<(), planner::pose_bag::BagError> {
-    let mut bag = BagWriter::create(output)?;
-    let (mut end_ns, selections) = (0, task.selections().len());
+    let mut bag = BagWriter::create_by(output, Compression::Zstd, Some(LIBRARY))?;
+    let selections = task.selections().len();
+    // Until when the arm moves, by topic.
+    let mut moves_until_ns = BTreeMap::<&str, u64>::new();
     for one in replayed {
         // Several topics must not mingle; one has the names that the node gives.
         let of = if selections > 1 { one.summary.topic.as_str() } else { "" };
-        end_ns = end_ns.max(write_set(&mut bag, of, one)?);
+        let until_ns = moves_until_ns.entry(of).or_default();
+        *until_ns = write_set(&mut bag, of, one, *until_ns)?;
     }
+    let end_ns = moves_until_ns.into_values().max().unwrap_or_default();
     let report = Report { settings: task.settings(), input: input.files.clone(), summary: summary.clone() };
     let data = serde_json::to_string(&report).unwrap_or_default();
     bag.add_topic::<Text>(REPORT, OfferedQos::TransientLocal)?;
@@ -182,10 +198,12 @@ fn write(
     bag.finish()
 }
 
-/// The time of its last message.
-fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed) -> Result<u64, planner::pose_bag::BagError> {
+/// The arm moves when the motion before is over, from `free_ns` on: one arm cannot play two trajectories at a time. Returns the time of the
+/// last message, or `free_ns` where that is later.
+fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed, free_ns: u64) -> Result<u64, planner::pose_bag::BagError> {
     let start_ns = one.set.log_time_ns;
-    let Some(ordering) = &one.ordering else { return Ok(start_ns) };
+    let begins_ns = start_ns.max(free_ns);
+    let Some(ordering) = &one.ordering else { return Ok(begins_ns) };
     let header = |at_ns: u64| msg::Header {
         stamp: i64::try_from(at_ns).ok().and_then(Time::from_nanos).unwrap_or_default(),
         frame_id: one.set.frame_id.clone(),
@@ -200,13 +218,13 @@ fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed) -> Result<u64, plann
     bag.write(&topic("path"), start_ns, &PathMessage { header: header(start_ns), poses: curve })?;
     let drawn = Drawn { poses: &one.set.poses, ordering: Some(ordering), curve: &one.curve, refusal: None };
     bag.write(&topic("markers"), start_ns, &drawn.markers(&header(start_ns)))?;
-    let Some(plan) = &one.plan else { return Ok(start_ns) };
+    let Some(plan) = &one.plan else { return Ok(begins_ns) };
     let joint_topic = |name: &str| format!("/{name}{of}");
     let stamped = |at_ns| Header { frame_id: String::new(), ..header(at_ns) };
-    bag.write(&joint_topic("joint_trajectory"), start_ns, &trajectory_message(&plan.trajectory, stamped(start_ns)))?;
-    let mut end_ns = start_ns;
+    bag.write(&joint_topic("joint_trajectory"), begins_ns, &trajectory_message(&plan.trajectory, stamped(begins_ns)))?;
+    let mut end_ns = begins_ns;
     for point in &plan.trajectory.points {
-        end_ns = start_ns.saturating_add((point.time_s * 1e9).round() as u64);
+        end_ns = begins_ns.saturating_add((point.time_s * 1e9).round() as u64);
         let state = JointState {
             header: stamped(end_ns),
             name: plan.trajectory.joint_names.clone(),

@@ -52,6 +52,12 @@ pub enum ReplayError {
         /// The result.
         path: PathBuf,
     },
+    /// A result would take the place of a file that no replay made.
+    #[error("{path}: already there, and not made by a replay: choose another place, or remove it", path = path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
     /// What runs that were killed left cannot be removed.
     #[error(transparent)]
     Abandoned(#[from] BagError),

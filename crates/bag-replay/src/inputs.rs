@@ -1,5 +1,6 @@
 //! Which bags are meant, and how it shows that one is another now.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
@@ -7,9 +8,6 @@ use std::time::UNIX_EPOCH;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ReplayError;
-
-/// Folders in folders that are looked into.
-const MAX_DEPTH: usize = 8;
 
 /// A bag, and what its output shall be called.
 #[derive(Debug, Clone)]
@@ -43,8 +41,17 @@ impl Input {
     pub fn new(path: PathBuf, name: String) -> Self {
         let inside =
             |folder: &Path| fs::read_dir(folder).map(|entries| entries.flatten().map(|entry| entry.path()).collect());
-        let mut paths: Vec<PathBuf> =
-            if path.is_dir() { inside(&path).unwrap_or_default() } else { vec![path.clone()] };
+        // What SQLite has not yet moved into the database belongs to it.
+        let log = |end: &str| {
+            let mut name = path.clone().into_os_string();
+            name.push(end);
+            PathBuf::from(name)
+        };
+        let mut paths: Vec<PathBuf> = if path.is_dir() {
+            inside(&path).unwrap_or_default()
+        } else {
+            vec![path.clone(), log("-wal"), log("-journal")]
+        };
         paths.sort();
         // What cannot be looked at cannot be read either, which is then said of the bag.
         let files = paths.into_iter().filter_map(|path| {
@@ -66,7 +73,7 @@ pub fn find(paths: &[PathBuf]) -> Result<Vec<Input>, ReplayError> {
     for path in paths {
         let before = found.len();
         if path.is_dir() && !is_bag_folder(path) {
-            collect(path, "", MAX_DEPTH, &mut found)?;
+            collect(path, "", &mut HashSet::new(), &mut found)?;
             if found.len() == before {
                 return Err(ReplayError::NoBag { folder: path.clone() });
             }
@@ -87,20 +94,29 @@ fn is_bag_folder(folder: &Path) -> bool {
     folder.join("metadata.yaml").exists()
 }
 
-fn collect(folder: &Path, prefix: &str, depth: usize, found: &mut Vec<Input>) -> Result<(), ReplayError> {
+/// Links are followed, but no folder is looked into twice.
+fn collect(
+    folder: &Path,
+    prefix: &str,
+    seen: &mut HashSet<PathBuf>,
+    found: &mut Vec<Input>,
+) -> Result<(), ReplayError> {
+    if !seen.insert(fs::canonicalize(folder).map_err(ReplayError::io(folder))?) {
+        return Ok(());
+    }
     let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
     for entry in entries.map_err(ReplayError::io(folder))? {
         let path = entry.path();
-        let kind = entry.file_type().map_err(ReplayError::io(&path))?;
         let name = format!("{prefix}{}", stem(&path));
         if entry.file_name().as_encoded_bytes().starts_with(b".") {
             continue;
         }
         let is_bag = path.extension().is_some_and(|extension| extension == "mcap" || extension == "db3");
-        if kind.is_dir() && is_bag_folder(&path) || !kind.is_dir() && is_bag {
+        let is_folder = path.is_dir();
+        if is_folder && is_bag_folder(&path) || !is_folder && is_bag {
             found.push(Input::new(path, name));
-        } else if kind.is_dir() && depth > 0 {
-            collect(&path, &format!("{name}_"), depth - 1, found)?;
+        } else if is_folder {
+            collect(&path, &format!("{name}_"), seen, found)?;
         }
     }
     Ok(())
@@ -111,4 +127,26 @@ fn stem(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let bare = name.strip_suffix(".mcap").or_else(|| name.strip_suffix(".db3")).unwrap_or(&name);
     bare.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_database_has_in_its_log_makes_it_another_bag() -> std::io::Result<()> {
+        let folder = std::env::temp_dir().join(format!("reorder-inputs-{}", std::process::id()));
+        fs::create_dir_all(&folder)?;
+        let database = folder.join("x.db3");
+        fs::write(&database, "database")?;
+        let input = || Input::new(database.clone(), "x".into()).files;
+        let before = input();
+        assert_eq!(before.len(), 1);
+        fs::write(folder.join("x.db3-wal"), "log")?;
+        let with_log = input();
+        assert_ne!(with_log, before);
+        fs::write(folder.join("x.db3-wal"), "longer log")?;
+        assert_ne!(input(), with_log);
+        fs::remove_dir_all(&folder)
+    }
 }

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use planner::pose_bag::remove_abandoned;
+use planner::pose_bag::{library_of, remove_abandoned};
 
+use crate::bag::LIBRARY;
 use crate::error::ReplayError;
 use crate::inputs::Input;
 
@@ -12,7 +13,7 @@ use crate::inputs::Input;
 /// runs left there half written is removed. `searched` is what the bags were looked for in.
 ///
 /// # Errors
-/// [`ReplayError`] where a result would take the place of an input or of another result, would be found as an input by the next run,
+/// [`ReplayError`] where a result would take the place of an input, of another result or of anything that no replay made, would be found as an input by the next run,
 /// or cannot be written.
 pub fn outputs(searched: &[PathBuf], inputs: &[Input], output: &Path) -> Result<Vec<PathBuf>, ReplayError> {
     let is_file = output.extension().is_some_and(|extension| extension == "mcap") && !output.is_dir();
@@ -31,6 +32,10 @@ pub fn outputs(searched: &[PathBuf], inputs: &[Input], output: &Path) -> Result<
     let outputs: Vec<PathBuf> = inputs.iter().map(file).collect();
     let taken = inputs.iter().flat_map(|input| input.files.iter().map(|file| &file.path).chain([&input.path]));
     spare(taken.map(PathBuf::as_path), outputs.iter().map(PathBuf::as_path))?;
+    let is_foreign = |path: &&PathBuf| path.exists() && library_of(path).is_none_or(|library| library != LIBRARY);
+    if let Some(path) = outputs.iter().find(is_foreign) {
+        return Err(ReplayError::Foreign { path: path.clone() });
+    }
     Ok(outputs)
 }
 

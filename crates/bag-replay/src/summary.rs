@@ -60,6 +60,8 @@ pub struct SetSummary {
     pub trajectory: Option<TrajectorySummary>,
     /// Why there is no trajectory, or no curve.
     pub refused: Option<String>,
+    /// Whether `error` or `refused` says that the input is at fault, and not the robot's abilities or a doubt.
+    pub bad_input: bool,
 }
 
 /// A planned trajectory in figures.

@@ -63,15 +63,15 @@ impl Task {
         Options { topology: self.topology, ..Options::default() }
     }
 
-    /// All of it, and the program's version, in words: an output that was made by other settings is made again.
+    /// All of it, and what the program was built from, in words: an output that was made by other settings is made again.
     pub(crate) fn settings(&self) -> String {
         let of_robot = self.robot.as_ref().map(|robot| {
             let mut hasher = DefaultHasher::new();
             format!("{robot:?}").hash(&mut hasher);
             format!("{} {:016x}", robot.name, hasher.finish())
         });
-        let (version, selections, options) = (env!("CARGO_PKG_VERSION"), self.selections(), self.options());
+        let (sources, selections, options) = (env!("REORDER_SOURCES"), self.selections(), self.options());
         let (weight, score, minimum_verdict) = (self.weight, self.score, self.minimum_verdict);
-        format!("{version} {selections:?} {options:?} {weight:?} {score} {minimum_verdict:?} {of_robot:?}")
+        format!("{sources} {selections:?} {options:?} {weight:?} {score} {minimum_verdict:?} {of_robot:?}")
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Read, Write};
 use std::path::Path;
 
 use mcap::records::MessageHeader;
@@ -95,6 +95,18 @@ impl BagWriter {
     /// # Errors
     /// As [`BagWriter::create`].
     pub fn create_with(path: impl AsRef<Path>, compression: Compression) -> Result<Self, BagError> {
+        Self::create_by(path, compression, None)
+    }
+
+    /// As [`BagWriter::create_with`]; the file's header names what wrote it, for [`library_of`].
+    ///
+    /// # Errors
+    /// As [`BagWriter::create`].
+    pub fn create_by(
+        path: impl AsRef<Path>,
+        compression: Compression,
+        library: Option<&str>,
+    ) -> Result<Self, BagError> {
         let path = path.as_ref();
         let file = path.display().to_string();
         let is_one_file = path.extension().is_some_and(|extension| extension == "mcap");
@@ -118,7 +130,10 @@ impl BagWriter {
             Compression::Lz4 => Some(mcap::Compression::Lz4),
         };
         // No worker threads: bags of poses are small.
-        let options = mcap::WriteOptions::new().profile("ros2").compression(compression).compression_threads(0);
+        let mut options = mcap::WriteOptions::new().profile("ros2").compression(compression).compression_threads(0);
+        if let Some(library) = library {
+            options = options.library(library);
+        }
         let writer = options.create(BufWriter::new(opened)).map_err(refused(&pending))?;
         Ok(Self { pending, file_in_folder, writer, topics: Vec::new(), span_ns: None })
     }
@@ -224,4 +239,23 @@ impl Topic {
 fn refused<E: std::fmt::Display>(pending: &Pending) -> impl FnOnce(E) -> BagError {
     let file = pending.label();
     move |error| BagError::Write { file, reason: error.to_string() }
+}
+
+/// What wrote an MCAP file, by the first bytes of it; `None` where it is no such file, or cannot be read.
+pub fn library_of(path: impl AsRef<Path>) -> Option<String> {
+    let mut start = Vec::new();
+    File::open(path).ok()?.take(LONGEST_HEADER).read_to_end(&mut start).ok()?;
+    // Behind the magic, the kind of the record and its length stand two strings, each behind its length: profile and library.
+    let record = start.strip_prefix(&mcap::MAGIC[..])?.strip_prefix(&[mcap::records::op::HEADER])?.get(8..)?;
+    let (_, rest) = prefixed(record)?;
+    let (library, _) = prefixed(rest)?;
+    String::from_utf8(library.to_vec()).ok()
+}
+
+/// Far more than both strings of a header are.
+const LONGEST_HEADER: u64 = 4096;
+
+fn prefixed(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = bytes.split_first_chunk::<4>()?;
+    rest.split_at_checked(u32::from_le_bytes(*length) as usize)
 }

@@ -33,7 +33,7 @@ mod table;
 mod track;
 
 pub use bag_reader::BagReader;
-pub use bag_writer::{BagWriter, Compression, OfferedQos};
+pub use bag_writer::{BagWriter, Compression, OfferedQos, library_of};
 pub use cdr::{CdrError, decode, encode};
 pub use channel::BagMessage;
 pub use error::BagError;

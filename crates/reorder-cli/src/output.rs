@@ -70,6 +70,8 @@ impl<'a> Pending<'a> {
             let folder = place.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
             let mut file = tempfile::Builder::new().permissions(readable).tempfile_in(folder)?;
             file.write_all(text.as_bytes())?;
+            // On the disk before it has its name, or a power cut could leave an empty file of that name.
+            file.as_file().sync_all()?;
             Ok(Content::File(file, place))
         };
         Ok(Self { content: write().map_err(|error| unwritten(path, &error))?, path })
@@ -91,7 +93,7 @@ fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
     Failure::BadInput(format!("{}: {error}", path.display()))
 }
 
-/// Writes a bag with what the ROS node publishes, on the same topics.
+/// Writes a bag with the trajectory, the ordered poses and the path, on the topics of the ROS node.
 pub(crate) fn write_bag(path: &Path, plan: &Plan, base_frame: &str, request: &Request) -> Result<(), Failure> {
     let header = || msg::Header { stamp: msg::Time::default(), frame_id: base_frame.to_owned() };
     let ordered = plan.ordered_poses(request).iter().map(Into::into).collect();

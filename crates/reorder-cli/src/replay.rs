@@ -163,12 +163,14 @@ fn say(bar: &ProgressBar, bag: &BagSummary, bags: usize) {
 fn verdict(bags: &[BagSummary], planned: bool) -> Result<(), Failure> {
     let broken: Vec<&BagSummary> = bags.iter().filter(|bag| bag.status == Status::Broken).collect();
     let damaged = bags.iter().filter(|bag| !bag.lost.is_empty()).count();
-    let refused = bags.iter().flat_map(|bag| &bag.sets).filter(|set| set.refused.is_some()).count();
+    let still: Vec<_> = bags.iter().flat_map(|bag| &bag.sets).filter(|set| set.trajectory.is_none()).collect();
     match (broken.as_slice(), bags) {
         ([BagSummary { error: Some(error), .. }], [_]) => Err(Failure::BadInput(error.clone())),
         ([], _) if damaged > 0 => Err(Failure::BadInput(format!("{} damaged", counted(damaged, "bag")))),
-        ([], _) if planned && refused > 0 => {
-            Err(Failure::Refused(format!("{} without trajectory", counted(refused, "set"))))
+        ([], _) if planned && !still.is_empty() => {
+            let sentence = format!("{} without trajectory", counted(still.len(), "set"));
+            let is_bad_input = still.iter().any(|set| set.bad_input);
+            Err(if is_bad_input { Failure::BadInput(sentence) } else { Failure::Refused(sentence) })
         }
         ([], _) => Ok(()),
         (broken, _) => {

@@ -124,10 +124,14 @@ impl Source {
             return Err(Failure::bad_input(loss));
         }
         let index = match self.message {
-            Some(index) if index < sets.len() => index,
-            Some(index) => {
-                let sentence = format!("{name}: there is no message {index}, only {} counted from 0", sets.len());
-                return Err(Failure::BadInput(sentence));
+            // Sets come by the time at which they were recorded; messages count as they stand in the bag.
+            Some(message) => {
+                let set = sets.iter().position(|set| set.origin.message == Some(message));
+                let only = (message == 0 && sets.len() == 1).then_some(0);
+                set.or(only).ok_or_else(|| {
+                    let sentence = format!("{name}: there is no message {message}, only {} counted from 0", sets.len());
+                    Failure::BadInput(sentence)
+                })?
             }
             None if sets.len() == 1 => 0,
             None => {

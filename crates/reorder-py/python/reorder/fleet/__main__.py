@@ -74,8 +74,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     print(f"{counts} in {run.seconds:.1f} s on {len(run.nodes)} machine(s); {run.summary}", file=sys.stderr)
     if run.count("broken") or any(bag["lost"] for bag in run.bags):
         return 2
-    refused = any(found["refused"] for bag in run.bags for found in bag["sets"])
-    return 1 if given.robot and refused else 0
+    still = [found for bag in run.bags for found in bag["sets"] if given.robot and not found["trajectory"]]
+    return 2 if any(found["bad_input"] for found in still) else 1 if still else 0
 
 
 if __name__ == "__main__":
