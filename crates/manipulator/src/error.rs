@@ -166,6 +166,14 @@ pub enum ManipulatorError {
         /// Angle left.
         rotation_error_rad: f64,
     },
+    /// The arm comes to an end on the way to a pose that it could take in another posture.
+    #[error(
+        "on the way to pose {pose} the arm comes to an end in every posture tried: the postures that take it there are cut off from those before"
+    )]
+    CutOff {
+        /// Index of the pose.
+        pose: usize,
+    },
     /// The way to a pose leads over a joint limit on every branch tried.
     #[error(
         "on the way to pose {pose} joint {joint:?} would have to go to {}", beyond(*value, *lower, *upper)

@@ -9,6 +9,7 @@ impl ManipulatorError {
         match self {
             Self::Unreachable(OutOfReach { misses, .. }) => misses.iter().map(|miss| miss.pose).collect(),
             Self::UnreachableBetween { pose, .. }
+            | Self::CutOff { pose }
             | Self::JointLimit { pose, .. }
             | Self::Singular { pose, .. }
             | Self::Jump { pose, .. }
@@ -22,6 +23,7 @@ impl ManipulatorError {
     pub(crate) fn at_pose(mut self, other: usize) -> Self {
         match &mut self {
             Self::UnreachableBetween { pose, .. }
+            | Self::CutOff { pose }
             | Self::JointLimit { pose, .. }
             | Self::Singular { pose, .. }
             | Self::Jump { pose, .. }

@@ -67,6 +67,8 @@ const LEAST_MOTION_STARTS: usize = 8;
 /// How many times more stations a redundant arm without a route gets: narrow ways between limits and singularities show to close ones
 /// only.
 const CLOSER: f64 = 4.0;
+/// Places between two poses that are looked at for being out of reach.
+const PLACES: usize = 8;
 /// Nearer than this to the first configuration, in rad or m, the robot stands there already.
 const STANDS_THERE: f64 = 1e-3;
 
@@ -86,7 +88,7 @@ const STANDS_THERE: f64 = 1e-3;
 ///
 /// # Errors
 /// [`ManipulatorError::TooFewJoints`] for an arm with fewer than six; [`ManipulatorError::Unreachable`] where some poses are out of reach; else the reason of the attempt that came farthest:
-/// [`ManipulatorError::UnreachableBetween`], [`ManipulatorError::JointLimit`], [`ManipulatorError::Singular`], [`ManipulatorError::Jump`],
+/// [`ManipulatorError::UnreachableBetween`], [`ManipulatorError::CutOff`], [`ManipulatorError::JointLimit`], [`ManipulatorError::Singular`], [`ManipulatorError::Jump`],
 /// [`ManipulatorError::PathTolerance`] or [`ManipulatorError::NotCyclic`], with the index of the pose.
 pub fn follow(
     robot: &Robot,
@@ -111,9 +113,27 @@ pub fn follow(
         let last = if robot.chain.dof() > 6 { thorough() } else { Err(stopped.clone()) };
         last.map_err(|last| {
             let farther = if last.parameter > stopped.parameter { last } else { stopped };
-            farther.error.at_pose(farther.pose)
+            true_reason(robot, curve, reference, farther.error).at_pose(farther.pose)
         })
     })
+}
+
+/// That one posture cannot go on does not say that none reaches the curve there.
+fn true_reason(
+    robot: &Robot,
+    curve: &PoseSpline,
+    reference: &DVector<f64>,
+    error: ManipulatorError,
+) -> ManipulatorError {
+    let ManipulatorError::UnreachableBetween { pose, .. } = error else { return error };
+    let knots = curve.knots();
+    let to = pose.clamp(1, knots.len() - 1);
+    let place = |part: usize| knots[to - 1] + (knots[to] - knots[to - 1]) * part as f64 / PLACES as f64;
+    let missed = (0..=PLACES).find_map(|part| {
+        let found = first_configurations(robot, &curve.pose(place(part)), reference);
+        found.err().filter(|error| matches!(error, ManipulatorError::UnreachableBetween { .. }))
+    });
+    missed.unwrap_or(ManipulatorError::CutOff { pose })
 }
 
 #[derive(Clone)]

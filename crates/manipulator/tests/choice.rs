@@ -109,6 +109,7 @@ fn assert_named_near(error: &ManipulatorError, poses: std::ops::RangeInclusive<u
             ManipulatorError::Singular { .. }
                 | ManipulatorError::Jump { .. }
                 | ManipulatorError::UnreachableBetween { .. }
+                | ManipulatorError::CutOff { .. }
                 | ManipulatorError::JointLimit { .. }
         ),
         "{error}"

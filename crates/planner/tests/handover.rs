@@ -135,6 +135,7 @@ fn reason(refusal: &Refusal) -> &'static str {
         Refusal::Manipulator { source, .. } => match &**source {
             ManipulatorError::Unreachable(_) => "out of reach",
             ManipulatorError::UnreachableBetween { .. }
+            | ManipulatorError::CutOff { .. }
             | ManipulatorError::JointLimit { .. }
             | ManipulatorError::Singular { .. }
             | ManipulatorError::Jump { .. }

@@ -13,11 +13,15 @@ use planner::reorder::{Options, Topology, order_poses};
 use planner::se3_geom::{Ends, Manifold, Pose, PoseSpline, Se3, So3, centripetal_knots};
 use planner::{Plan, Refusal, plan};
 use support::closing::{between_poses_fault, loop_fault};
-use support::follower::{End, follow_from_many};
+use support::follower::{End, follow_from_many, reaches};
 use support::pose_sets::PoseSet;
 use support::random::Random;
 
 const SAMPLE: u64 = 6;
+/// Places between two poses that are tried for being out of reach.
+const PLACES: usize = 8;
+/// Both searches sample the postures of an arm; by this part of the curve one may come farther than the other.
+const CUT_OFF_WITHIN: f64 = 0.02;
 
 #[test]
 fn random_poses_are_planned_for_the_ur5e_or_refused_for_a_reason_that_holds() {
@@ -32,6 +36,16 @@ fn random_poses_are_planned_for_the_viperx_or_refused_for_a_reason_that_holds() 
 #[test]
 fn random_poses_are_planned_for_the_panda_or_refused_for_a_reason_that_holds() {
     assert_planned_or_truly_refused("panda");
+}
+
+/// Set 863 of a thousand: every pose can be taken, and a nearest miss of some posture's own would be no reason.
+#[test]
+fn poses_that_postures_reach_which_are_cut_off_are_not_called_out_of_reach() {
+    let robot = Robot::shipped("panda").unwrap();
+    let set = PoseSet::draw(&robot, 863);
+    let refusal = plan(&robot, &set.config(), &set.request).unwrap_err();
+    assert_eq!(kind(&refusal), "cut off", "{refusal}");
+    assert_eq!(doubt_about(&robot, &set, &refusal), None);
 }
 
 fn assert_planned_or_truly_refused(name: &str) {
@@ -112,6 +126,7 @@ fn kind(refusal: &Refusal) -> &'static str {
     match refusal {
         Refusal::Manipulator { source, .. } => match &**source {
             ManipulatorError::Unreachable { .. } => "unreachable",
+            ManipulatorError::CutOff { .. } => "cut off",
             ManipulatorError::JointLimit { .. } => "joint limit",
             ManipulatorError::Singular { .. } => "singular",
             ManipulatorError::Jump { .. } => "jump",
@@ -173,6 +188,19 @@ fn doubt_about(robot: &Robot, set: &PoseSet, refusal: &Refusal) -> Option<String
         let segment = knots[pose.saturating_sub(2)]..=knots[(pose + 1).min(knots.len() - 1)];
         ends.iter().filter_map(like).any(|s| segment.contains(&s))
     };
+    // Where the limits are what keeps the arm from it, attempts end at them, mostly elsewhere.
+    let is_out_of_reach = |pose: usize| {
+        let knots = curve.knots();
+        let (from, to) = (knots[pose.saturating_sub(1)], knots[(pose + 1).min(knots.len() - 1)]);
+        let mut random = Random::new(set.seed);
+        let at = |part: usize| curve.pose(from + (to - from) * part as f64 / PLACES as f64);
+        (0..=PLACES).map(at).any(|place| {
+            (0..attempts).all(|_| {
+                let near = random.configuration(&robot.limits.lower, &robot.limits.upper);
+                reaches(robot, &place, &near, &mut random).is_none()
+            })
+        })
+    };
     let named = |joint: &str| robot.chain.joint_names().iter().position(|name| name == joint);
     let holds = match &**source {
         ManipulatorError::JointLimit { pose, joint, value, lower, upper } => {
@@ -195,8 +223,18 @@ fn doubt_about(robot: &Robot, set: &PoseSet, refusal: &Refusal) -> Option<String
             stopped(pose, &|end| match end {
                 End::Lost(s) | End::Singular(s, _) => Some(*s),
                 _ => None,
-            })
+            }) || is_out_of_reach(pose)
         }),
+        // Nobody gets much farther, and it is not the pose itself that is the matter.
+        ManipulatorError::CutOff { pose } => {
+            let (from, to) = curve.domain();
+            let farthest = curve.knots()[*pose] + CUT_OFF_WITHIN * (to - from);
+            let goes_farther = |end: &End| match end {
+                End::Limit(s, _) | End::Singular(s, _) | End::Lost(s) => *s > farthest,
+                End::Through => true,
+            };
+            !ends.iter().any(goes_farther) && !is_out_of_reach(*pose)
+        }
         _ => false,
     };
     (!holds).then(|| format!("attempts ended otherwise: {:?}", &ends[..ends.len().min(6)]))
