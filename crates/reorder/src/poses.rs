@@ -22,6 +22,7 @@ pub fn order_poses(poses: &[Pose], metres_per_radian: f64, options: &Options) ->
 /// The metric is d² = L²‖rotation‖² + ‖translation‖², so that all lengths in the answer are metres. L is a choice that can change
 /// the order; therefore the points are ordered at L/2 and 2L too, and `weight_stable` says whether all three agree on every
 /// neighbourhood. Where they do not, that is a doubt and the verdict is [`Verdict::Ambiguous`](crate::Verdict::Ambiguous).
+/// It says `None` where the tree branches in so many places that no order of it is to be trusted at any weight.
 ///
 /// # Errors
 /// Those of [`order`](crate::order), and [`OrderError::InvalidLengthScale`].
