@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufReader, Read, Seek};
+use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use crate::BagError;
@@ -66,15 +66,7 @@ impl BagReader {
 
     /// What the first bytes of a file say.
     pub(crate) fn storage_of(path: &Path) -> Result<Option<Storage>, BagError> {
-        let in_file = || BagError::io(path.display().to_string());
-        let mut start = Vec::new();
-        let opened = File::open(path).map_err(in_file())?;
-        opened.take(sqlite::MAGIC.len() as u64).read_to_end(&mut start).map_err(in_file())?;
-        Ok(if has_magic(&start) {
-            Some(Storage::Mcap)
-        } else {
-            start.starts_with(sqlite::MAGIC).then_some(Storage::Sqlite)
-        })
+        storage_in(path).map_err(BagError::io(path.display().to_string()))
     }
 
     /// What it was opened as.
@@ -108,10 +100,11 @@ impl BagReader {
                 }
             };
             match self.read_file(path, &file, &mut counts, visit, &mut lost) {
-                // Of a split bag the other files are still worth something.
-                Err(fault @ Fault::Io(_)) if self.files.len() > 1 => lost(0, fault),
-                Err(fault) => return Err(named(&file, 0, fault)),
                 Ok(()) => {}
+                Err(Fault::Visit(error)) => return Err(error),
+                // Of a split bag the other files are still worth something.
+                Err(fault) if self.files.len() > 1 => lost(0, as_loss(fault)),
+                Err(fault) => return Err(named(&file, 0, fault)),
             }
         }
         Ok(losses)
@@ -130,16 +123,19 @@ impl BagReader {
         let mut source = BufReader::with_capacity(1 << 16, opened);
         let packed_messages = self.packed == Packed::Messages;
         // rosbag2 leaves the last file of a recording that was killed as it is.
-        let is_packed = self.packed == Packed::Files && Self::storage_of(path).map_err(Fault::Visit)?.is_none();
+        let is_packed = self.packed == Packed::Files && storage_in(path)?.is_none();
         match (self.storage, is_packed) {
             (Storage::Mcap, false) => read_mcap(&mut source, packed_messages, file, counts, visit, lost),
             (Storage::Sqlite, false) => read_sqlite(path, packed_messages, file, counts, visit, lost),
             (storage, true) => {
                 let mut whole = tempfile::NamedTempFile::new()?;
-                let unpacked = unpack_file(&mut source, size, &mut whole);
-                if let Err(error) = &unpacked {
-                    lost(0, Fault::Corrupt(format!("it cannot be decompressed to its end: {error}")));
-                }
+                let is_whole = match unpack_file(&mut source, size, &mut whole) {
+                    Err(damage @ Fault::Corrupt(_)) => {
+                        lost(0, damage);
+                        false
+                    }
+                    unpacked => unpacked.map(|()| true)?,
+                };
                 whole.rewind()?;
                 let read = match storage {
                     Storage::Mcap => read_mcap(&mut BufReader::new(whole), false, file, counts, visit, lost),
@@ -147,7 +143,7 @@ impl BagReader {
                 };
                 match read {
                     // What came out before the damage need not even begin like a bag.
-                    Err(Fault::Visit(BagError::NotMcap { .. } | BagError::Empty { .. })) if unpacked.is_err() => Ok(()),
+                    Err(Fault::NotMcap | Fault::Empty) if !is_whole => Ok(()),
                     read => read,
                 }
             }
@@ -170,9 +166,30 @@ impl BagReader {
     }
 }
 
+fn storage_in(path: &Path) -> io::Result<Option<Storage>> {
+    let mut start = Vec::new();
+    File::open(path)?.take(sqlite::MAGIC.len() as u64).read_to_end(&mut start)?;
+    Ok(if has_magic(&start) {
+        Some(Storage::Mcap)
+    } else {
+        start.starts_with(sqlite::MAGIC).then_some(Storage::Sqlite)
+    })
+}
+
+/// A file of a bag that has others is damaged where it alone would be no bag.
+fn as_loss(fault: Fault) -> Fault {
+    match fault {
+        Fault::Empty => Fault::Corrupt("it is empty".into()),
+        Fault::NotMcap => Fault::Corrupt("its first bytes are not the MCAP magic".into()),
+        other => other,
+    }
+}
+
 fn named(file: &str, messages_read: u64, fault: Fault) -> BagError {
     let file = file.to_owned();
     match fault {
+        Fault::Empty => BagError::Empty { file },
+        Fault::NotMcap => BagError::NotMcap { file },
         Fault::Cut => BagError::Truncated { file, messages_read },
         Fault::Corrupt(reason) => BagError::Corrupt { file, messages_read, reason },
         Fault::Io(source) => BagError::Io { file, source },

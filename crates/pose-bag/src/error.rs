@@ -378,6 +378,12 @@ impl BagError {
         matches!(self, Self::Truncated { .. } | Self::Corrupt { .. } | Self::Io { .. })
     }
 
+    /// Whether the operating system refused: that may pass, and reading again later may give more. All else is wrong with the
+    /// file itself and stays so.
+    pub fn may_pass(&self) -> bool {
+        matches!(self, Self::Io { .. })
+    }
+
     pub(crate) fn io(file: impl Into<String>) -> impl FnOnce(std::io::Error) -> Self {
         let file = file.into();
         move |source| Self::Io { file, source }

@@ -5,7 +5,6 @@ use std::io::Read;
 
 use mcap::records::op;
 
-use crate::BagError;
 use crate::bounded::Budget;
 use crate::channel::{BagMessage, Channel, Counts, Schema, Visit};
 use crate::mcap_records::{Fault, Records, read_file};
@@ -32,10 +31,10 @@ pub(crate) fn read_mcap(
     let mut start = Vec::new();
     source.by_ref().take(mcap::MAGIC.len() as u64).read_to_end(&mut start)?;
     if start.is_empty() {
-        return Err(Fault::Visit(BagError::Empty { file: file.into() }));
+        return Err(Fault::Empty);
     }
     if !mcap::MAGIC.starts_with(&start) {
-        return Err(Fault::Visit(BagError::NotMcap { file: file.into() }));
+        return Err(Fault::NotMcap);
     }
     let read = if start.len() < mcap::MAGIC.len() { Err(Fault::Cut) } else { read_file(source, &mut linker) };
     match read {

@@ -10,7 +10,7 @@ use std::io::{self, ErrorKind, Read};
 use mcap::records::op;
 
 use crate::BagError;
-use crate::bounded::{Budget, MAX_MESSAGE_BYTES};
+use crate::bounded::{Budget, MAX_MESSAGE_BYTES, undecodable};
 
 /// Writers keep chunks to a few megabytes.
 const MAX_CHUNK_BYTES: u64 = 128 << 20;
@@ -21,6 +21,10 @@ const FIRST_PRIVATE_OPCODE: u8 = 0x80;
 
 /// Why reading a file ended before its end.
 pub(crate) enum Fault {
+    /// There are no bytes.
+    Empty,
+    /// The file does not begin like MCAP.
+    NotMcap,
     /// The file ends inside a record.
     Cut,
     /// The records contradict each other.
@@ -189,8 +193,10 @@ fn unpack_chunk(
             return Ok(Err(format!("a chunk is compressed by the unknown method {name:?}")));
         }
     };
-    if let Err(error) = unpacked {
-        return Ok(Err(format!("a chunk cannot be decompressed: {error}")));
+    match unpacked.map_err(|error| undecodable("a chunk cannot be decompressed", error)) {
+        Ok(()) => {}
+        Err(Fault::Corrupt(why)) => return Ok(Err(why)),
+        Err(fault) => return Err(fault),
     }
     if inside.len() as u64 != claimed {
         let more = if inside.len() as u64 > claimed { "more than" } else { "less than" };

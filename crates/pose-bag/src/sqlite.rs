@@ -116,6 +116,9 @@ impl Reader<'_, '_> {
 fn whole_pages(path: &Path, size: u64) -> Result<Option<TempDir>, Fault> {
     let mut file = File::open(path)?;
     let mut start = [0; MAGIC.len() + 2];
+    if size == 0 {
+        return Err(Fault::Corrupt("it is empty".into()));
+    }
     if size < start.len() as u64 {
         return Err(Fault::Corrupt("it is not an SQLite file".into()));
     }
@@ -213,6 +216,9 @@ impl From<rusqlite::Error> for Fault {
             Some(ErrorCode::OperationInterrupted) => "reading it takes more work than its size explains".into(),
             Some(ErrorCode::DatabaseCorrupt) => "its pages are damaged or missing".into(),
             Some(ErrorCode::NotADatabase) => "it is not an SQLite file".into(),
+            Some(ErrorCode::SystemIoFailure | ErrorCode::DiskFull | ErrorCode::CannotOpen) => {
+                return Self::Io(io::Error::other(error));
+            }
             _ => error.to_string(),
         })
     }

@@ -213,9 +213,11 @@ fn a_message_that_cannot_be_decompressed_is_lost_alone() {
     }
 }
 
-/// A chunk of so many bytes (private records without length), by zstd, that claims to hold `claimed` bytes.
+/// A chunk of so many bytes (private records of a mebibyte of zeros), by zstd, that claims to hold `claimed` bytes.
 fn packed_records(bytes: usize, claimed: u64) -> Vec<u8> {
-    let packed = zstd::bulk::compress(&record(0x80, 0, &[]).repeat(bytes.div_ceil(9))[..bytes], 1).unwrap();
+    let zeros = vec![0; (1 << 20) - 9];
+    let records = record(0x80, zeros.len() as u64, &zeros).repeat(bytes.div_ceil(1 << 20));
+    let packed = zstd::bulk::compress(&records[..bytes], 1).unwrap();
     let size = (packed.len() as u64).to_le_bytes();
     let body = [&[0; 16][..], &claimed.to_le_bytes(), &[0; 4], &u32_bytes_prefixed(b"zstd"), &size, &packed].concat();
     record(6, body.len() as u64, &body)
