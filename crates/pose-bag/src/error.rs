@@ -223,6 +223,22 @@ pub enum BagError {
         /// Frame of this message.
         found: String,
     },
+    /// A topic changes the frame whose poses it tells.
+    #[error(
+        "{file}, topic {topic}, message {message} (counted from 0): the child frame is {found:?} after {expected:?}"
+    )]
+    MixedChildFrames {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// Child frame of the messages before.
+        expected: String,
+        /// Child frame of this message.
+        found: String,
+    },
     /// A pose of a path is given in another frame than the path.
     #[error(
         "{file}, topic {topic}, message {message}, pose {pose} (counted from 0): the frame is {found:?} in a path of {expected:?}"

@@ -19,7 +19,14 @@ const MAX_PAIRS: usize = 100;
 /// Messages are taken in the order in which they were recorded.
 pub(crate) fn read_bag(bag: &BagReader, selection: &Selection) -> Result<(Vec<PoseSet>, Vec<BagError>), BagError> {
     let topic = topic_of(bag, selection)?;
-    let mut collector = Collector { selection, sets: Vec::new(), singles: Vec::new(), frame: None, pairs: Vec::new() };
+    let mut collector = Collector {
+        selection,
+        sets: Vec::new(),
+        singles: Vec::new(),
+        frame: None,
+        child_frame: None,
+        pairs: Vec::new(),
+    };
     let mut topic_type: Option<String> = None;
     let losses = bag.for_each(&mut |message| {
         if message.topic() != topic {
@@ -63,6 +70,8 @@ struct Collector<'a> {
     singles: Vec<Stamped>,
     /// Frame of the poses of `singles`, and the file of the first.
     frame: Option<(String, PathBuf)>,
+    /// Frame whose poses odometry tells.
+    child_frame: Option<String>,
     /// Frame pairs of transforms, parent first, as they first came.
     pairs: Vec<(String, String)>,
 }
@@ -91,6 +100,7 @@ impl Collector<'_> {
             }
             Kind::Single(Single::Odometry) => {
                 let odometry: msg::Odometry = message.decode()?;
+                self.same_child_frame(message, odometry.child_frame_id)?;
                 self.take_single(message, odometry.header, &odometry.pose.pose, 0)
             }
             Kind::Transforms => self.take_transforms(message),
@@ -137,6 +147,21 @@ impl Collector<'_> {
         let (log_time_ns, stamp_ns) = (message.log_time_ns, header.stamp.to_nanos());
         self.singles.push(Stamped { log_time_ns, stamp_ns, pose });
         Ok(())
+    }
+
+    /// Of a topic that tells of two things in turn no curve is made.
+    fn same_child_frame(&mut self, message: &BagMessage<'_>, found: String) -> Result<(), BagError> {
+        let expected = self.child_frame.get_or_insert_with(|| found.clone());
+        if *expected == found {
+            return Ok(());
+        }
+        Err(BagError::MixedChildFrames {
+            file: message.file.to_owned(),
+            topic: message.topic().to_owned(),
+            message: message.index(),
+            expected: expected.clone(),
+            found,
+        })
     }
 
     fn take_transforms(&mut self, message: &BagMessage<'_>) -> Result<(), BagError> {
