@@ -1,7 +1,6 @@
 //! Messages out of bags, one at a time.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
@@ -10,7 +9,7 @@ use crate::bounded::unpack_file;
 use crate::channel::{BagMessage, Counts};
 use crate::mcap_messages::{has_magic, read_mcap};
 use crate::mcap_records::Fault;
-use crate::metadata::{Packed, Storage, stored_in};
+use crate::metadata::{Packed, Storage, open_regular, stored_in};
 use crate::sqlite::{self, read_sqlite};
 
 /// Damages of a bag that are told one by one.
@@ -118,7 +117,7 @@ impl BagReader {
         visit: &mut dyn FnMut(&BagMessage<'_>) -> Result<(), BagError>,
         lost: &mut dyn FnMut(u64, Fault),
     ) -> Result<(), Fault> {
-        let opened = File::open(path)?;
+        let opened = open_regular(path)?;
         let size = opened.metadata()?.len();
         let mut source = BufReader::with_capacity(1 << 16, opened);
         let packed_messages = self.packed == Packed::Messages;
@@ -168,7 +167,7 @@ impl BagReader {
 
 fn storage_in(path: &Path) -> io::Result<Option<Storage>> {
     let mut start = Vec::new();
-    File::open(path)?.take(sqlite::MAGIC.len() as u64).read_to_end(&mut start)?;
+    open_regular(path)?.take(sqlite::MAGIC.len() as u64).read_to_end(&mut start)?;
     Ok(if has_magic(&start) {
         Some(Storage::Mcap)
     } else {

@@ -78,3 +78,41 @@ fn where_every_file_is_empty_that_is_the_error() {
         assert_eq!(sentences(folder.path(), &[error]), ["a is damaged after 0 readable messages: it is empty"]);
     }
 }
+
+#[test]
+fn files_that_are_named_twice_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let whole = fs::read(small_bag(folder, Compression::Zstd, MESSAGES)).unwrap();
+    split(folder, "storage_identifier: mcap", &[("a.mcap", &whole), ("b.mcap", &whole)]);
+    assert_eq!(read_poses(folder, None).unwrap()[0].poses.len(), 2 * MESSAGES);
+    // Of what a file is named only the last part counts.
+    for names in [["a.mcap", "b.mcap", "a.mcap"], ["sub1/a.mcap", "b.mcap", "sub2/a.mcap"]] {
+        write_metadata(folder, "storage_identifier: mcap", &names);
+        let error = read_poses(folder, None).unwrap_err().to_string();
+        let expected = "is not the folder of a rosbag2 bag: metadata.yaml: relative_file_paths names a.mcap twice";
+        assert!(error.ends_with(expected), "{error}");
+    }
+}
+
+#[test]
+fn pipes_are_refused_instead_of_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let pipe = |name: &str| {
+        let path = folder.join(name);
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+        path
+    };
+    for name in ["a.mcap", "a.db3", "a"] {
+        let error = read_poses(pipe(name), None).unwrap_err();
+        assert_eq!(sentences(folder, &[error]), [format!("{name}: it is not a regular file")]);
+    }
+    write_metadata(folder, "storage_identifier: sqlite3", &["a.db3"]);
+    let error = read_poses(folder, None).unwrap_err();
+    assert_eq!(sentences(folder, &[error]), ["a.db3: it is not a regular file"]);
+    fs::remove_file(folder.join("metadata.yaml")).unwrap();
+    pipe("metadata.yaml");
+    let error = read_poses(folder, None).unwrap_err().to_string();
+    assert!(error.ends_with("metadata.yaml: it is not a regular file"), "{error}");
+}
