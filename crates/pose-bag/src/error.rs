@@ -378,6 +378,20 @@ pub enum BagError {
         /// Type of the message.
         written: String,
     },
+    /// More poses than are held in memory.
+    #[error(
+        "{file}, topic {topic}, message {message} (counted from 0): here are more than the {limit} poses that are held of a bag"
+    )]
+    TooManyPoses {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0, with the first pose too many.
+        message: usize,
+        /// Most poses that are held.
+        limit: usize,
+    },
     /// The MCAP writer refused.
     #[error("{file} could not be written: {reason}")]
     Write {
