@@ -81,10 +81,10 @@ impl BagReader {
     /// Hands every message to `visit`, file after file, in the order in which they were recorded. What `visit` refuses ends it.
     ///
     /// What is damaged or cut off is passed over as far as the rest can be told apart from it; the answer says what was lost, and
-    /// is empty for a whole bag. [`BagError::is_loss`] is true of all of it.
+    /// is empty for a whole bag. [`BagError::is_loss`] is true of all of it, and [`BagError::may_pass`] of what is not lost for good.
     ///
     /// # Errors
-    /// What `visit` returned, or where a file is no bag at all.
+    /// What `visit` returned, or where the only file is no bag at all.
     pub fn for_each(
         &self,
         visit: &mut dyn FnMut(&BagMessage<'_>) -> Result<(), BagError>,
