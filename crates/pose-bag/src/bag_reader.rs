@@ -1,8 +1,7 @@
 //! Messages out of bags, one at a time.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufReader, Read, Seek};
+use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use crate::BagError;
@@ -10,7 +9,7 @@ use crate::bounded::unpack_file;
 use crate::channel::{BagMessage, Counts};
 use crate::mcap_messages::{has_magic, read_mcap};
 use crate::mcap_records::Fault;
-use crate::metadata::{Packed, Storage, stored_in};
+use crate::metadata::{Packed, Storage, open_regular, stored_in};
 use crate::sqlite::{self, read_sqlite};
 
 /// Damages of a bag that are told one by one.
@@ -66,15 +65,7 @@ impl BagReader {
 
     /// What the first bytes of a file say.
     pub(crate) fn storage_of(path: &Path) -> Result<Option<Storage>, BagError> {
-        let in_file = || BagError::io(path.display().to_string());
-        let mut start = Vec::new();
-        let opened = File::open(path).map_err(in_file())?;
-        opened.take(sqlite::MAGIC.len() as u64).read_to_end(&mut start).map_err(in_file())?;
-        Ok(if has_magic(&start) {
-            Some(Storage::Mcap)
-        } else {
-            start.starts_with(sqlite::MAGIC).then_some(Storage::Sqlite)
-        })
+        storage_in(path).map_err(BagError::io(path.display().to_string()))
     }
 
     /// What it was opened as.
@@ -90,10 +81,10 @@ impl BagReader {
     /// Hands every message to `visit`, file after file, in the order in which they were recorded. What `visit` refuses ends it.
     ///
     /// What is damaged or cut off is passed over as far as the rest can be told apart from it; the answer says what was lost, and
-    /// is empty for a whole bag. [`BagError::is_loss`] is true of all of it.
+    /// is empty for a whole bag. [`BagError::is_loss`] is true of all of it, and [`BagError::may_pass`] of what is not lost for good.
     ///
     /// # Errors
-    /// What `visit` returned, or where a file is no bag at all.
+    /// What `visit` returned, or where the only file is no bag at all.
     pub fn for_each(
         &self,
         visit: &mut dyn FnMut(&BagMessage<'_>) -> Result<(), BagError>,
@@ -108,10 +99,11 @@ impl BagReader {
                 }
             };
             match self.read_file(path, &file, &mut counts, visit, &mut lost) {
-                // Of a split bag the other files are still worth something.
-                Err(fault @ Fault::Io(_)) if self.files.len() > 1 => lost(0, fault),
-                Err(fault) => return Err(named(&file, 0, fault)),
                 Ok(()) => {}
+                Err(Fault::Visit(error)) => return Err(error),
+                // Of a split bag the other files are still worth something.
+                Err(fault) if self.files.len() > 1 => lost(0, as_loss(fault)),
+                Err(fault) => return Err(named(&file, 0, fault)),
             }
         }
         Ok(losses)
@@ -125,21 +117,24 @@ impl BagReader {
         visit: &mut dyn FnMut(&BagMessage<'_>) -> Result<(), BagError>,
         lost: &mut dyn FnMut(u64, Fault),
     ) -> Result<(), Fault> {
-        let opened = File::open(path)?;
+        let opened = open_regular(path)?;
         let size = opened.metadata()?.len();
         let mut source = BufReader::with_capacity(1 << 16, opened);
         let packed_messages = self.packed == Packed::Messages;
         // rosbag2 leaves the last file of a recording that was killed as it is.
-        let is_packed = self.packed == Packed::Files && Self::storage_of(path).map_err(Fault::Visit)?.is_none();
+        let is_packed = self.packed == Packed::Files && storage_in(path)?.is_none();
         match (self.storage, is_packed) {
             (Storage::Mcap, false) => read_mcap(&mut source, packed_messages, file, counts, visit, lost),
             (Storage::Sqlite, false) => read_sqlite(path, packed_messages, file, counts, visit, lost),
             (storage, true) => {
                 let mut whole = tempfile::NamedTempFile::new()?;
-                let unpacked = unpack_file(&mut source, size, &mut whole);
-                if let Err(error) = &unpacked {
-                    lost(0, Fault::Corrupt(format!("it cannot be decompressed to its end: {error}")));
-                }
+                let is_whole = match unpack_file(&mut source, size, &mut whole) {
+                    Err(damage @ Fault::Corrupt(_)) => {
+                        lost(0, damage);
+                        false
+                    }
+                    unpacked => unpacked.map(|()| true)?,
+                };
                 whole.rewind()?;
                 let read = match storage {
                     Storage::Mcap => read_mcap(&mut BufReader::new(whole), false, file, counts, visit, lost),
@@ -147,7 +142,7 @@ impl BagReader {
                 };
                 match read {
                     // What came out before the damage need not even begin like a bag.
-                    Err(Fault::Visit(BagError::NotMcap { .. } | BagError::Empty { .. })) if unpacked.is_err() => Ok(()),
+                    Err(Fault::NotMcap | Fault::Empty) if !is_whole => Ok(()),
                     read => read,
                 }
             }
@@ -170,9 +165,30 @@ impl BagReader {
     }
 }
 
+fn storage_in(path: &Path) -> io::Result<Option<Storage>> {
+    let mut start = Vec::new();
+    open_regular(path)?.take(sqlite::MAGIC.len() as u64).read_to_end(&mut start)?;
+    Ok(if has_magic(&start) {
+        Some(Storage::Mcap)
+    } else {
+        start.starts_with(sqlite::MAGIC).then_some(Storage::Sqlite)
+    })
+}
+
+/// A file of a bag that has others is damaged where it alone would be no bag.
+fn as_loss(fault: Fault) -> Fault {
+    match fault {
+        Fault::Empty => Fault::Corrupt("it is empty".into()),
+        Fault::NotMcap => Fault::Corrupt("its first bytes are not the MCAP magic".into()),
+        other => other,
+    }
+}
+
 fn named(file: &str, messages_read: u64, fault: Fault) -> BagError {
     let file = file.to_owned();
     match fault {
+        Fault::Empty => BagError::Empty { file },
+        Fault::NotMcap => BagError::NotMcap { file },
         Fault::Cut => BagError::Truncated { file, messages_read },
         Fault::Corrupt(reason) => BagError::Corrupt { file, messages_read, reason },
         Fault::Io(source) => BagError::Io { file, source },

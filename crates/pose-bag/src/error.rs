@@ -223,6 +223,22 @@ pub enum BagError {
         /// Frame of this message.
         found: String,
     },
+    /// A topic changes the frame whose poses it tells.
+    #[error(
+        "{file}, topic {topic}, message {message} (counted from 0): the child frame is {found:?} after {expected:?}"
+    )]
+    MixedChildFrames {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0.
+        message: usize,
+        /// Child frame of the messages before.
+        expected: String,
+        /// Child frame of this message.
+        found: String,
+    },
     /// A pose of a path is given in another frame than the path.
     #[error(
         "{file}, topic {topic}, message {message}, pose {pose} (counted from 0): the frame is {found:?} in a path of {expected:?}"
@@ -362,6 +378,20 @@ pub enum BagError {
         /// Type of the message.
         written: String,
     },
+    /// More poses than are held in memory.
+    #[error(
+        "{file}, topic {topic}, message {message} (counted from 0): here are more than the {limit} poses that are held of a bag"
+    )]
+    TooManyPoses {
+        /// The file.
+        file: String,
+        /// The topic.
+        topic: String,
+        /// Message on the topic, from 0, with the first pose too many.
+        message: usize,
+        /// Most poses that are held.
+        limit: usize,
+    },
     /// The MCAP writer refused.
     #[error("{file} could not be written: {reason}")]
     Write {
@@ -376,6 +406,12 @@ impl BagError {
     /// Whether it says what part of a bag is lost, the rest being readable.
     pub fn is_loss(&self) -> bool {
         matches!(self, Self::Truncated { .. } | Self::Corrupt { .. } | Self::Io { .. })
+    }
+
+    /// Whether the operating system refused: that may pass, and reading again later may give more. All else is wrong with the
+    /// file itself and stays so.
+    pub fn may_pass(&self) -> bool {
+        matches!(self, Self::Io { .. })
     }
 
     pub(crate) fn io(file: impl Into<String>) -> impl FnOnce(std::io::Error) -> Self {

@@ -5,7 +5,6 @@ use std::io::Read;
 
 use mcap::records::op;
 
-use crate::BagError;
 use crate::bounded::Budget;
 use crate::channel::{BagMessage, Channel, Counts, Schema, Visit};
 use crate::mcap_records::{Fault, Records, read_file};
@@ -27,14 +26,15 @@ pub(crate) fn read_mcap(
 ) -> Result<(), Fault> {
     let (schemas, channels, unknown) = (HashMap::new(), HashMap::new(), HashSet::new());
     let unpack = packed_messages.then(Default::default);
-    let mut linker = Linker { file, unpack, counts, visit, lost, schemas, channels, unknown, messages_read: 0 };
+    let mut linker =
+        Linker { file, unpack, counts, visit, lost, schemas, channels, unknown, messages_read: 0, message_records: 0 };
     let mut start = Vec::new();
     source.by_ref().take(mcap::MAGIC.len() as u64).read_to_end(&mut start)?;
     if start.is_empty() {
-        return Err(Fault::Visit(BagError::Empty { file: file.into() }));
+        return Err(Fault::Empty);
     }
     if !mcap::MAGIC.starts_with(&start) {
-        return Err(Fault::Visit(BagError::NotMcap { file: file.into() }));
+        return Err(Fault::NotMcap);
     }
     let read = if start.len() < mcap::MAGIC.len() { Err(Fault::Cut) } else { read_file(source, &mut linker) };
     match read {
@@ -58,6 +58,8 @@ struct Linker<'a, 'v> {
     /// Channels of which it was said that their messages are lost.
     unknown: HashSet<u16>,
     messages_read: u64,
+    /// All there are, also those that belong to no channel.
+    message_records: u64,
 }
 
 impl Records for Linker<'_, '_> {
@@ -71,12 +73,20 @@ impl Records for Linker<'_, '_> {
             op::CHANNEL => {
                 fields.channel().map(|(id, schema, topic, encoding)| self.add_channel(id, schema, topic, encoding))
             }
-            _ => fields.message().map(|(id, log_time_ns)| self.message(id, log_time_ns, fields.0)),
+            op::STATISTICS => fields.array().map(|count| {
+                self.compare(u64::from_le_bytes(count));
+                Ok(())
+            }),
+            _ => {
+                self.message_records += 1;
+                fields.message().map(|(id, log_time_ns)| self.message(id, log_time_ns, fields.0))
+            }
         };
         read.unwrap_or_else(|| {
             let kind = match opcode {
                 op::SCHEMA => "schema",
                 op::CHANNEL => "channel",
+                op::STATISTICS => "statistics",
                 _ => "message",
             };
             Err(Fault::Corrupt(format!("a {kind} record is too short")))
@@ -110,6 +120,14 @@ impl Linker<'_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// What was taken for something else than a message, or a chunk of them, shows in the number.
+    fn compare(&mut self, counted: u64) {
+        let found = self.message_records;
+        if found != counted {
+            self.lost(format!("there are {found} messages where its statistics count {counted}"));
+        }
     }
 
     fn message(&mut self, id: u16, log_time_ns: u64, data: &[u8]) -> Result<(), Fault> {

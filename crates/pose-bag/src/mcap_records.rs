@@ -10,13 +10,21 @@ use std::io::{self, ErrorKind, Read};
 use mcap::records::op;
 
 use crate::BagError;
-use crate::bounded::{Budget, MAX_MESSAGE_BYTES};
+use crate::bounded::{Budget, MAX_MESSAGE_BYTES, undecodable};
 
 /// Writers keep chunks to a few megabytes.
 const MAX_CHUNK_BYTES: u64 = 128 << 20;
+/// A checksum, which may be zero.
+const DATA_END_BYTES: u64 = 4;
+/// Applications may use this opcode and those above as they like; all others are MCAP's own.
+const FIRST_PRIVATE_OPCODE: u8 = 0x80;
 
 /// Why reading a file ended before its end.
 pub(crate) enum Fault {
+    /// There are no bytes.
+    Empty,
+    /// The file does not begin like MCAP.
+    NotMcap,
     /// The file ends inside a record.
     Cut,
     /// The records contradict each other.
@@ -35,15 +43,15 @@ impl From<io::Error> for Fault {
 
 /// Who is told of the records of a file.
 pub(crate) trait Records {
-    /// A schema, channel or message record, in file order.
+    /// A schema, channel, message or statistics record, in file order; statistics come behind all messages.
     fn record(&mut self, opcode: u8, body: &[u8]) -> Result<(), Fault>;
-    /// A chunk is lost, wholly or from somewhere on; the file goes on behind it.
+    /// A record is lost, wholly or from somewhere on; the file goes on behind it.
     fn lost(&mut self, why: String);
 }
 
 /// Reads a file from behind its first magic to its end.
 pub(crate) fn read_file(source: &mut impl Read, records: &mut impl Records) -> Result<(), Fault> {
-    let mut in_data = true;
+    let (mut in_data, mut is_first) = (true, true);
     let (mut body, mut chunk, mut budget) = (Vec::new(), Vec::new(), Budget::default());
     while let Some((opcode, len)) = record_head(source)? {
         match opcode {
@@ -52,22 +60,68 @@ pub(crate) fn read_file(source: &mut impl Read, records: &mut impl Records) -> R
                     records.lost(why);
                 }
             }
-            // The summary repeats schemas and channels of the data section.
             op::SCHEMA | op::CHANNEL | op::MESSAGE if in_data => {
                 read_body(source, len, &mut body)?;
                 records.record(opcode, &body)?;
+            }
+            op::STATISTICS if !in_data => {
+                read_body(source, len, &mut body)?;
+                records.record(opcode, &body)?;
+            }
+            // What claims another length is another record with a damaged opcode, and the data go on.
+            op::DATA_END if in_data && len == DATA_END_BYTES => {
+                in_data = false;
+                skip(source, len)?;
+            }
+            op::MESSAGE_INDEX if in_data => {
+                if !is_message_index(&mut source.by_ref().take(len))? {
+                    records.lost(format!("a message index of {len} bytes claims to have another length"));
+                }
             }
             op::FOOTER => {
                 skip(source, len)?;
                 return read_end(source);
             }
             _ => {
-                in_data &= opcode != op::DATA_END;
                 skip(source, len)?;
+                if let Some(why) = out_of_place(opcode, len, in_data, is_first) {
+                    records.lost(why);
+                }
             }
         }
+        is_first = false;
     }
     Err(Fault::Cut)
+}
+
+/// Why a record that is not read tells of damage: a bit of an opcode may have flipped, and what it was is lost.
+fn out_of_place(opcode: u8, len: u64, in_data: bool, is_first: bool) -> Option<String> {
+    match opcode {
+        op::HEADER if is_first => None,
+        // Nothing in them is of use here, wherever they are.
+        op::ATTACHMENT | op::METADATA | FIRST_PRIVATE_OPCODE.. => None,
+        // The summary repeats schemas and channels of the data section.
+        op::SCHEMA | op::CHANNEL | op::CHUNK_INDEX | op::ATTACHMENT_INDEX | op::METADATA_INDEX | op::SUMMARY_OFFSET
+            if !in_data =>
+        {
+            None
+        }
+        op::DATA_END if in_data => Some(format!("the record that ends the data has {len} bytes instead of 4")),
+        op::HEADER..=op::DATA_END => {
+            let place = if in_data { "before" } else { "after" };
+            Some(format!("a record of kind {opcode:#04x} {place} the end of the data is out of place"))
+        }
+        unknown => Some(format!("a record is of the unknown kind {unknown:#04x}")),
+    }
+}
+
+/// Takes a message index to its end: a channel, and as many bytes as it says. Whether these are all.
+fn is_message_index(index: &mut io::Take<impl Read>) -> Result<bool, Fault> {
+    let len = index.limit();
+    let claimed = if len < 6 { None } else { Some(read_array::<6>(index)?) };
+    let unread = index.limit();
+    skip(index, unread)?;
+    Ok(claimed.is_some_and(|[_, _, size @ ..]| u64::from(u32::from_le_bytes(size)) == len - 6))
 }
 
 fn read_end(source: &mut impl Read) -> Result<(), Fault> {
@@ -139,8 +193,10 @@ fn unpack_chunk(
             return Ok(Err(format!("a chunk is compressed by the unknown method {name:?}")));
         }
     };
-    if let Err(error) = unpacked {
-        return Ok(Err(format!("a chunk cannot be decompressed: {error}")));
+    match unpacked.map_err(|error| undecodable("a chunk cannot be decompressed", error)) {
+        Ok(()) => {}
+        Err(Fault::Corrupt(why)) => return Ok(Err(why)),
+        Err(fault) => return Err(fault),
     }
     if inside.len() as u64 != claimed {
         let more = if inside.len() as u64 > claimed { "more than" } else { "less than" };
@@ -159,19 +215,21 @@ fn fill(source: impl Read, claimed: u64, inside: &mut Vec<u8>) -> io::Result<()>
 }
 
 fn chunk_records(inside: &[u8], records: &mut impl Records) -> Result<Result<(), String>, Fault> {
-    let mut rest = inside;
+    let (mut rest, mut read) = (inside, Ok(()));
     while let Some((head, after)) = rest.split_first_chunk::<9>() {
         let len = u64::from_le_bytes(std::array::from_fn(|i| head[i + 1]));
         let Some((body, after)) = usize::try_from(len).ok().and_then(|len| after.split_at_checked(len)) else { break };
-        if matches!(head[0], op::SCHEMA | op::CHANNEL | op::MESSAGE) {
-            match records.record(head[0], body) {
+        match head[0] {
+            op::SCHEMA | op::CHANNEL | op::MESSAGE => match records.record(head[0], body) {
                 Err(Fault::Corrupt(why)) => return Ok(Err(why)),
                 other => other?,
-            }
+            },
+            FIRST_PRIVATE_OPCODE.. => {}
+            other => read = read.and(Err(format!("a chunk holds a record of kind {other:#04x}"))),
         }
         rest = after;
     }
-    Ok(if rest.is_empty() { Ok(()) } else { Err("a record goes beyond the end of its chunk".into()) })
+    Ok(if rest.is_empty() { read } else { Err("a record goes beyond the end of its chunk".into()) })
 }
 
 /// Opcode and length of the next record; `None` where the stream ends before it.

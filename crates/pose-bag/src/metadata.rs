@@ -1,7 +1,9 @@
 //! `metadata.yaml` of a rosbag2 bag, version 9 (ROS 2 Jazzy).
 
-use std::fs;
-use std::io::Read;
+use std::collections::HashSet;
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -173,7 +175,7 @@ pub(crate) fn stored_in(folder: &Path) -> Result<Stored, BagError> {
         |reason: String| BagError::NotABag { file: file.clone(), reason: format!("{METADATA_FILE}: {reason}") };
     let unsupported = |feature: String| BagError::Unsupported { file: file.clone(), feature };
     let mut text = String::new();
-    let read = fs::File::open(&path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_string(&mut text));
+    let read = open_regular(&path).and_then(|opened| opened.take(MAX_BYTES + 1).read_to_string(&mut text));
     read.map_err(|error| invalid(error.to_string()))?;
     if text.len() as u64 > MAX_BYTES {
         return Err(invalid(format!("it has more than {MAX_BYTES} bytes")));
@@ -199,8 +201,23 @@ pub(crate) fn stored_in(folder: &Path) -> Result<Stored, BagError> {
         return Err(invalid("relative_file_paths is empty".into()));
     }
     // Bags before version 4 prefix the name of the folder, and a bag may have been renamed since.
-    let file_name = |relative: &String| Path::new(relative).file_name().map(|name| folder.join(name));
-    let files = metadata.relative_file_paths.iter().map(file_name).collect::<Option<Vec<_>>>();
-    let files = files.ok_or_else(|| invalid("relative_file_paths names no file".into()))?;
+    let name_of = |relative: &String| Path::new(relative).file_name().map(OsStr::to_owned);
+    let names = metadata.relative_file_paths.iter().map(name_of).collect::<Option<Vec<_>>>();
+    let names = names.ok_or_else(|| invalid("relative_file_paths names no file".into()))?;
+    let mut seen = HashSet::new();
+    // Its poses would be there twice, or a hundred thousand times.
+    if let Some(twice) = names.iter().find(|name| !seen.insert(*name)) {
+        return Err(invalid(format!("relative_file_paths names {} twice", twice.display())));
+    }
+    let files = names.iter().map(|name| folder.join(name)).collect();
     Ok(Stored { files, storage, packed })
+}
+
+/// Opens a file of a bag. A pipe would be waited for without end, and cannot be read twice.
+pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
+    if fs::metadata(path)?.is_file() {
+        File::open(path)
+    } else {
+        Err(io::Error::new(ErrorKind::InvalidInput, "it is not a regular file"))
+    }
 }

@@ -14,12 +14,32 @@ use crate::pose_topic::{Kind, Single, not_poses, pair, topic_of};
 /// Frame pairs to choose from that are told.
 const MAX_PAIRS: usize = 100;
 
+/// Poses that are held of a bag, some 4 GB: a file of megabytes may unfold to any number of them.
+const MAX_POSES: usize = 50_000_000;
+
 /// Poses of one topic of a bag, and what of the bag is lost.
 ///
 /// Messages are taken in the order in which they were recorded.
 pub(crate) fn read_bag(bag: &BagReader, selection: &Selection) -> Result<(Vec<PoseSet>, Vec<BagError>), BagError> {
+    read_at_most(MAX_POSES, bag, selection)
+}
+
+fn read_at_most(
+    limit: usize,
+    bag: &BagReader,
+    selection: &Selection,
+) -> Result<(Vec<PoseSet>, Vec<BagError>), BagError> {
     let topic = topic_of(bag, selection)?;
-    let mut collector = Collector { selection, sets: Vec::new(), singles: Vec::new(), frame: None, pairs: Vec::new() };
+    let mut collector = Collector {
+        selection,
+        limit,
+        held: 0,
+        sets: Vec::new(),
+        singles: Vec::new(),
+        frame: None,
+        child_frame: None,
+        pairs: Vec::new(),
+    };
     let mut topic_type: Option<String> = None;
     let losses = bag.for_each(&mut |message| {
         if message.topic() != topic {
@@ -58,11 +78,16 @@ struct Stamped {
 
 struct Collector<'a> {
     selection: &'a Selection,
+    /// Most poses that may be held.
+    limit: usize,
+    held: usize,
     /// Of messages that hold many poses.
     sets: Vec<PoseSet>,
     singles: Vec<Stamped>,
     /// Frame of the poses of `singles`, and the file of the first.
     frame: Option<(String, PathBuf)>,
+    /// Frame whose poses odometry tells.
+    child_frame: Option<String>,
     /// Frame pairs of transforms, parent first, as they first came.
     pairs: Vec<(String, String)>,
 }
@@ -91,10 +116,24 @@ impl Collector<'_> {
             }
             Kind::Single(Single::Odometry) => {
                 let odometry: msg::Odometry = message.decode()?;
+                self.same_child_frame(message, odometry.child_frame_id)?;
                 self.take_single(message, odometry.header, &odometry.pose.pose, 0)
             }
             Kind::Transforms => self.take_transforms(message),
         }
+    }
+
+    fn hold(&mut self, message: &BagMessage<'_>, poses: usize) -> Result<(), BagError> {
+        self.held += poses;
+        if self.held <= self.limit {
+            return Ok(());
+        }
+        Err(BagError::TooManyPoses {
+            file: message.file.to_owned(),
+            topic: message.topic().to_owned(),
+            message: message.index(),
+            limit: self.limit,
+        })
     }
 
     fn take_set(
@@ -104,6 +143,8 @@ impl Collector<'_> {
         poses: &[msg::Pose],
         stamps_ns: Option<Vec<i64>>,
     ) -> Result<(), BagError> {
+        // A set takes room without poses too, and its frame may have a long name.
+        self.hold(message, poses.len() + 1 + header.frame_id.len() / size_of::<Pose>())?;
         let convert = |(index, pose)| checked(message, index, pose);
         let poses = poses.iter().enumerate().map(convert).collect::<Result<_, _>>()?;
         let origin = Origin {
@@ -123,6 +164,7 @@ impl Collector<'_> {
         pose: &msg::Pose,
         index: usize,
     ) -> Result<(), BagError> {
+        self.hold(message, 1)?;
         let pose = checked(message, index, pose)?;
         let (expected, _) = self.frame.get_or_insert_with(|| (header.frame_id.clone(), message.file.into()));
         if *expected != header.frame_id {
@@ -137,6 +179,21 @@ impl Collector<'_> {
         let (log_time_ns, stamp_ns) = (message.log_time_ns, header.stamp.to_nanos());
         self.singles.push(Stamped { log_time_ns, stamp_ns, pose });
         Ok(())
+    }
+
+    /// Of a topic that tells of two things in turn no curve is made.
+    fn same_child_frame(&mut self, message: &BagMessage<'_>, found: String) -> Result<(), BagError> {
+        let expected = self.child_frame.get_or_insert_with(|| found.clone());
+        if *expected == found {
+            return Ok(());
+        }
+        Err(BagError::MixedChildFrames {
+            file: message.file.to_owned(),
+            topic: message.topic().to_owned(),
+            message: message.index(),
+            expected: expected.clone(),
+            found,
+        })
     }
 
     fn take_transforms(&mut self, message: &BagMessage<'_>) -> Result<(), BagError> {
@@ -220,4 +277,36 @@ fn checked(message: &BagMessage<'_>, index: usize, pose: &msg::Pose) -> Result<P
         pose: index,
         reason,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BagWriter;
+
+    #[test]
+    fn no_more_poses_are_held_than_the_limit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("many.mcap");
+        let pose = msg::Pose::from(&Pose::identity());
+        let mut bag = BagWriter::create(&path).unwrap();
+        for time_ns in 0..5 {
+            bag.write("/arrays", time_ns, &msg::PoseArray { header: msg::Header::default(), poses: vec![pose; 9] })
+                .unwrap();
+            bag.write("/tool", time_ns, &msg::PoseStamped { header: msg::Header::default(), pose }).unwrap();
+        }
+        bag.finish().unwrap();
+        let bag = BagReader::open(&path).unwrap();
+        let read = |topic: &str, limit| {
+            read_at_most(limit, &bag, &Selection { topic: Some(topic.into()), ..Selection::default() })
+        };
+        // An array counts as one pose more than it holds.
+        assert_eq!(read("/arrays", 50).unwrap().0.len(), 5);
+        assert_eq!(read("/tool", 5).unwrap().0[0].poses.len(), 5);
+        for (topic, limit, message) in [("/arrays", 49, 4), ("/arrays", 20, 2), ("/tool", 4, 4)] {
+            let place = format!("{}, topic {topic}, message {message} (counted from 0)", path.display());
+            let expected = format!("{place}: here are more than the {limit} poses that are held of a bag");
+            assert_eq!(read(topic, limit).unwrap_err().to_string(), expected);
+        }
+    }
 }

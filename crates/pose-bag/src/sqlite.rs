@@ -6,11 +6,11 @@
 use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rusqlite::limits::Limit;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
-use tempfile::NamedTempFile;
+use tempfile::TempDir;
 
 use crate::bounded::{Budget, MAX_MESSAGE_BYTES};
 use crate::channel::{BagMessage, Channel, Counts, Schema, Visit};
@@ -19,6 +19,8 @@ use crate::mcap_records::Fault;
 /// What every SQLite file begins with.
 pub(crate) const MAGIC: &[u8] = b"SQLite format 3\0";
 
+/// Name of a copy.
+const COPY: &str = "copy.db3";
 const MAX_TOPICS: usize = 10_000;
 /// Steps of SQLite's machine between two looks at how many there were.
 const STEPS_AT_ONCE: i32 = 10_000;
@@ -60,7 +62,8 @@ impl Reader<'_, '_> {
         let whole_pages = whole_pages(path, main_size)?;
         // What a killed recorder wrote is in its log for the most part.
         let size = main_size.saturating_add(log_size(path));
-        let database = open(whole_pages.as_ref().map_or(path, NamedTempFile::path), size)?;
+        let copy = whole_pages.as_ref().map(|folder| folder.path().join(COPY));
+        let database = open(copy.as_deref().unwrap_or(path), size)?;
         for table in ["topics", "messages"] {
             // A virtual table has no page of its own.
             let is_table = "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND rootpage > 0 AND name = ?1";
@@ -100,14 +103,22 @@ impl Reader<'_, '_> {
             BagMessage { file: self.file, channel, log_time_ns, data }.hand_to(self.visit)?;
             self.messages_read += 1;
         }
+        // Where it held a message that is missed, that was said already.
+        if whole_pages.is_some() {
+            (self.lost)(self.messages_read, Fault::Corrupt("its last page is cut off".into()));
+        }
         Ok(())
     }
 }
 
-/// A copy without the last page where that is cut: SQLite would fill it up with zeros, and a message with it.
-fn whole_pages(path: &Path, size: u64) -> Result<Option<NamedTempFile>, Fault> {
+/// A folder with a copy without the last page where that is cut: SQLite would fill it up with zeros, and a message with it.
+/// The log is beside it, where SQLite looks for it.
+fn whole_pages(path: &Path, size: u64) -> Result<Option<TempDir>, Fault> {
     let mut file = File::open(path)?;
     let mut start = [0; MAGIC.len() + 2];
+    if size == 0 {
+        return Err(Fault::Corrupt("it is empty".into()));
+    }
     if size < start.len() as u64 {
         return Err(Fault::Corrupt("it is not an SQLite file".into()));
     }
@@ -121,16 +132,24 @@ fn whole_pages(path: &Path, size: u64) -> Result<Option<NamedTempFile>, Fault> {
         return Ok(None);
     }
     file.rewind()?;
-    let mut copy = NamedTempFile::new()?;
-    io::copy(&mut file.take(size / page * page), &mut copy)?;
-    Ok(Some(copy))
+    let folder = tempfile::tempdir()?;
+    let copy = folder.path().join(COPY);
+    io::copy(&mut file.take(size / page * page), &mut File::create(&copy)?)?;
+    if log_size(path) > 0 {
+        fs::copy(log_of(path), log_of(&copy))?;
+    }
+    Ok(Some(folder))
 }
 
-/// Bytes of the write-ahead log beside a file.
-fn log_size(path: &Path) -> u64 {
+/// The write-ahead log beside a file.
+fn log_of(path: &Path) -> PathBuf {
     let mut log = path.as_os_str().to_owned();
     log.push("-wal");
-    fs::metadata(log).map_or(0, |log| log.len())
+    log.into()
+}
+
+fn log_size(path: &Path) -> u64 {
+    fs::metadata(log_of(path)).map_or(0, |log| log.len())
 }
 
 fn open(path: &Path, size: u64) -> Result<Connection, Fault> {
@@ -197,6 +216,9 @@ impl From<rusqlite::Error> for Fault {
             Some(ErrorCode::OperationInterrupted) => "reading it takes more work than its size explains".into(),
             Some(ErrorCode::DatabaseCorrupt) => "its pages are damaged or missing".into(),
             Some(ErrorCode::NotADatabase) => "it is not an SQLite file".into(),
+            Some(ErrorCode::SystemIoFailure | ErrorCode::DiskFull | ErrorCode::CannotOpen) => {
+                return Self::Io(io::Error::other(error));
+            }
             _ => error.to_string(),
         })
     }

@@ -114,9 +114,11 @@ fn a_damaged_chunk_is_lost_alone() {
     fs::write(&path, &bytes).unwrap();
     let error = read_poses(&path, None).unwrap_err().to_string();
     let (sets, losses) = recover_poses(&path, &Selection::default()).unwrap();
-    assert_eq!(losses.iter().map(ToString::to_string).collect::<Vec<_>>(), [error]);
-    // A chunk is closed once it holds 2000 bytes: some 20 messages of 119 are in it.
     let read = &sets[0].poses;
+    let counts = format!("there are {} messages where its statistics count {MESSAGES}", read.len());
+    let said: Vec<_> = losses.iter().map(ToString::to_string).collect();
+    assert!(said.len() == 2 && said[0] == error && said[1].ends_with(&counts), "{said:?}");
+    // A chunk is closed once it holds 2000 bytes: some 20 messages of 119 are in it.
     assert!((MESSAGES - 25..MESSAGES - 10).contains(&read.len()), "{}", read.len());
     assert!(read.iter().all(|pose| support::poses(MESSAGES).iter().any(|whole| whole.translation == pose.translation)));
     assert!(read.iter().all(|pose| pose.translation != support::pose(20).translation));
@@ -164,6 +166,28 @@ fn messages_of_a_lost_channel_are_lost_alone() {
 }
 
 #[test]
+fn a_message_that_is_no_message_any_more_is_lost_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("kind.mcap");
+    let mut records = tool_channel();
+    for k in 0..5 {
+        let mut message = message_record(1, &encode(&support::stamped("base", 0, &support::pose(k))).unwrap());
+        message[0] ^= if k == 4 { 2 } else { 0 };
+        records.extend(message);
+    }
+    for (records, expected) in [
+        (chunk(&records), "after 4 readable messages: a chunk holds a record of kind 0x07"),
+        (records, "after 4 readable messages: a message index of 106 bytes claims to have another length"),
+    ] {
+        fs::write(&path, file_of(&records)).unwrap();
+        let (sets, losses) = recover_poses(&path, &Selection::default()).unwrap();
+        support::assert_same(&sets[0].poses, &support::poses(4));
+        let said: Vec<_> = losses.iter().map(ToString::to_string).collect();
+        assert!(said.len() == 1 && said[0].ends_with(expected), "{said:?}");
+    }
+}
+
+#[test]
 fn a_message_that_cannot_be_decompressed_is_lost_alone() {
     let folder = tempfile::tempdir().unwrap();
     let mut records = tool_channel();
@@ -189,9 +213,11 @@ fn a_message_that_cannot_be_decompressed_is_lost_alone() {
     }
 }
 
-/// A chunk of so many zeros (records of opcode 0 and no length), by zstd, that claims to hold `claimed` bytes.
-fn packed_zeros(zeros: usize, claimed: u64) -> Vec<u8> {
-    let packed = zstd::bulk::compress(&vec![0; zeros], 1).unwrap();
+/// A chunk of so many bytes (private records of a mebibyte of zeros), by zstd, that claims to hold `claimed` bytes.
+fn packed_records(bytes: usize, claimed: u64) -> Vec<u8> {
+    let zeros = vec![0; (1 << 20) - 9];
+    let records = record(0x80, zeros.len() as u64, &zeros).repeat(bytes.div_ceil(1 << 20));
+    let packed = zstd::bulk::compress(&records[..bytes], 1).unwrap();
     let size = (packed.len() as u64).to_le_bytes();
     let body = [&[0; 16][..], &claimed.to_le_bytes(), &[0; 4], &u32_bytes_prefixed(b"zstd"), &size, &packed].concat();
     record(6, body.len() as u64, &body)
@@ -202,12 +228,12 @@ fn bombs_are_refused_before_they_unfold() {
     let folder = tempfile::tempdir().unwrap();
     let mib = 1 << 20;
     let cases = [
-        (packed_zeros(100 * mib, 100 << 20), "claims to hold 104857600, which is not believed"),
-        (packed_zeros(100 * mib, 4000), "a chunk holds more than the 4000 bytes that it claims"),
-        (packed_zeros(mib, 1 << 60), "claims to hold 1152921504606846976, which is not believed"),
-        (packed_zeros(4000, 4001), "a chunk holds less than the 4001 bytes that it claims"),
+        (packed_records(100 * mib, 100 << 20), "claims to hold 104857600, which is not believed"),
+        (packed_records(100 * mib, 4000), "a chunk holds more than the 4000 bytes that it claims"),
+        (packed_records(mib, 1 << 60), "claims to hold 1152921504606846976, which is not believed"),
+        (packed_records(4000, 4001), "a chunk holds less than the 4001 bytes that it claims"),
         // 1000 times 9 MiB out of a kilobyte or so each: a few are believed, and all others not.
-        (packed_zeros(9 * mib, 9 << 20).repeat(1000), "claims to hold 9437184, which is not believed"),
+        (packed_records(9 * mib, 9 << 20).repeat(1000), "claims to hold 9437184, which is not believed"),
     ];
     for (chunk, expected) in cases {
         let started = std::time::Instant::now();

@@ -109,6 +109,28 @@ fn a_cut_is_an_error_and_what_is_whole_is_recovered() {
 }
 
 #[test]
+fn a_log_beside_a_cut_page_is_read_and_the_cut_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), 3);
+    let database = Connection::open(&path).unwrap();
+    database.execute_batch("PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 0; BEGIN;").unwrap();
+    for k in 3..1003 {
+        let data = encode(&stamped("base", k as i64, &pose(k))).unwrap();
+        database.execute("INSERT INTO messages VALUES (NULL, 1, ?1, ?2)", (k as i64, data)).unwrap();
+    }
+    database.execute_batch("COMMIT").unwrap();
+    let cut = folder.path().join("cut.db3");
+    fs::copy(folder.path().join("whole.db3-wal"), folder.path().join("cut.db3-wal")).unwrap();
+    fs::write(&cut, [fs::read(&path).unwrap(), vec![1; 100]].concat()).unwrap();
+    let (sets, losses) = recover_poses(&cut, &Selection::default()).unwrap();
+    assert_same(&sets[0].poses, &poses(1003));
+    let said: Vec<_> = losses.iter().map(ToString::to_string).collect();
+    let expected = format!("{} is damaged after 1003 readable messages: its last page is cut off", cut.display());
+    assert_eq!(said, [expected]);
+    assert!(read_poses(&cut, None).is_err());
+}
+
+#[test]
 fn tables_that_are_none_and_rows_that_never_end_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i AS id, 1 AS topic_id, i AS timestamp, \

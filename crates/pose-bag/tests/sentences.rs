@@ -6,7 +6,9 @@ mod support;
 use std::fs;
 use std::path::PathBuf;
 
-use pose_bag::msg::{Message, Path, PoseArray, PoseStamped, Text};
+use pose_bag::msg::{
+    Message, Odometry, Path, PoseArray, PoseStamped, PoseWithCovariance, Text, Twist, TwistWithCovariance,
+};
 use pose_bag::{BagWriter, Table, encode, read_poses, read_table};
 use support::{array, header, poses, stamped};
 use tempfile::TempDir;
@@ -178,6 +180,28 @@ fn frames_and_types_that_change() {
     assert_eq!(
         folder.sentence(read_poses(folder.path("bag.mcap"), None)),
         "bag.mcap, topic /tool, message 1 (counted from 0): the frame is \"world\" after \"base\""
+    );
+}
+
+#[test]
+fn a_child_frame_that_changes() {
+    let folder = Folder::new();
+    let write = |child_frames: &[&str]| {
+        let _ = fs::remove_file(folder.path("bag.mcap"));
+        let mut bag = BagWriter::create(folder.path("bag.mcap")).unwrap();
+        for (time_ns, child) in (0..).zip(child_frames) {
+            let pose = PoseWithCovariance { pose: stamped("odom", 0, &poses(1)[0]).pose, covariance: [0.0; 36] };
+            let (header, twist) =
+                (header("odom", 0), TwistWithCovariance { twist: Twist::default(), covariance: [0.0; 36] });
+            bag.write("/odom", time_ns, &Odometry { header, child_frame_id: (*child).into(), pose, twist }).unwrap();
+        }
+        bag.finish().unwrap();
+        read_poses(folder.path("bag.mcap"), None)
+    };
+    assert_eq!(write(&["base", "base"]).unwrap()[0].poses.len(), 2);
+    assert_eq!(
+        folder.sentence(write(&["base", "base", "camera", "base"])),
+        "bag.mcap, topic /odom, message 2 (counted from 0): the child frame is \"camera\" after \"base\""
     );
 }
 
