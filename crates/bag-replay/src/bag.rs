@@ -7,7 +7,7 @@ use std::path::Path;
 use planner::pose_bag::msg::{
     Header, JointState, MarkerArray, Path as PathMessage, PoseArray, PoseStamped, Text, Time,
 };
-use planner::pose_bag::{BagReader, BagWriter, Compression, OfferedQos, PoseSet, msg, recover_poses};
+use planner::pose_bag::{BagError, BagReader, BagWriter, Compression, OfferedQos, PoseSet, msg, recover_poses};
 use planner::reorder::{Ordering, order_weighted};
 use planner::se3_geom::{Pose, Se3};
 use planner::{Config, Drawn, Plan, Request, interpolate, path_along, plan, trajectory_message};
@@ -28,6 +28,8 @@ pub(crate) const LIBRARY: &str = "reorder replay";
 #[derive(Serialize, Deserialize)]
 struct Report {
     settings: String,
+    /// Whether something was lost by an accident, a full disk or a share that was gone, so that another run may find it.
+    may_pass: bool,
     input: Vec<InputFile>,
     summary: BagSummary,
 }
@@ -57,8 +59,7 @@ fn caught<T>(name: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, 
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(fault()))
 }
 
-/// What an earlier run found, where its output is whole and would be the same again. What was lost then may be there by now: a disk that
-/// was full, a share that was gone.
+/// What an earlier run found, where its output is whole and would be the same again.
 fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
     let mut report: Option<Report> = None;
     let losses = BagReader::open(output).ok()?.for_each(&mut |message| {
@@ -68,7 +69,7 @@ fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
         Ok(())
     });
     let report = report.filter(|_| losses.is_ok_and(|losses| losses.is_empty()))?;
-    let is_same = report.settings == task.settings() && report.input == input.files && report.summary.lost.is_empty();
+    let is_same = report.settings == task.settings() && report.input == input.files && !report.may_pass;
     is_same.then(|| BagSummary {
         bag: input.path.display().to_string(),
         output: Some(output.display().to_string()),
@@ -79,10 +80,11 @@ fn earlier(input: &Input, output: &Path, task: &Task) -> Option<BagSummary> {
 
 fn replay_anew(input: &Input, output: Option<&Path>, task: &Task, advance: &dyn Fn(f64)) -> Result<BagSummary, String> {
     let mut lost: Vec<String> = Vec::new();
-    let mut sets = Vec::new();
+    let (mut sets, mut may_pass) = (Vec::new(), false);
     for selection in task.selections() {
         let (found, losses) = recover_poses(&input.path, &selection).map_err(|error| error.to_string())?;
         sets.extend(found);
+        may_pass |= losses.iter().any(BagError::may_pass);
         // Every pass over a bag meets the same damage, but not the same accidents.
         for loss in losses.iter().map(ToString::to_string) {
             if !lost.contains(&loss) {
@@ -108,7 +110,9 @@ fn replay_anew(input: &Input, output: Option<&Path>, task: &Task, advance: &dyn 
         sets: replayed.iter().map(|replayed| replayed.summary.clone()).collect(),
     };
     if let Some(output) = output {
-        write(input, output, task, &replayed, &summary).map_err(|error| error.to_string())?;
+        let report =
+            Report { settings: task.settings(), may_pass, input: input.files.clone(), summary: summary.clone() };
+        write(output, task, &replayed, &report).map_err(|error| error.to_string())?;
     }
     Ok(summary)
 }
@@ -173,13 +177,7 @@ fn replay_set(set: PoseSet, task: &Task) -> Replayed {
     Replayed { set, summary, ordering: Some(ordering), curve, plan }
 }
 
-fn write(
-    input: &Input,
-    output: &Path,
-    task: &Task,
-    replayed: &[Replayed],
-    summary: &BagSummary,
-) -> Result<(), planner::pose_bag::BagError> {
+fn write(output: &Path, task: &Task, replayed: &[Replayed], report: &Report) -> Result<(), BagError> {
     let mut bag = BagWriter::create_by(output, Compression::Zstd, Some(LIBRARY))?;
     let selections = task.selections().len();
     // Until when the arm moves, by topic.
@@ -191,8 +189,7 @@ fn write(
         *until_ns = write_set(&mut bag, of, one, *until_ns)?;
     }
     let end_ns = moves_until_ns.into_values().max().unwrap_or_default();
-    let report = Report { settings: task.settings(), input: input.files.clone(), summary: summary.clone() };
-    let data = serde_json::to_string(&report).unwrap_or_default();
+    let data = serde_json::to_string(report).unwrap_or_default();
     bag.add_topic::<Text>(REPORT, OfferedQos::TransientLocal)?;
     bag.write(REPORT, end_ns, &Text { data })?;
     bag.finish()
@@ -200,7 +197,7 @@ fn write(
 
 /// The arm moves when the motion before is over, from `free_ns` on: one arm cannot play two trajectories at a time. Returns the time of the
 /// last message, or `free_ns` where that is later.
-fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed, free_ns: u64) -> Result<u64, planner::pose_bag::BagError> {
+fn write_set(bag: &mut BagWriter, of: &str, one: &Replayed, free_ns: u64) -> Result<u64, BagError> {
     let start_ns = one.set.log_time_ns;
     let begins_ns = start_ns.max(free_ns);
     let Some(ordering) = &one.ordering else { return Ok(begins_ns) };

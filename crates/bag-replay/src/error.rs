@@ -53,7 +53,7 @@ pub enum ReplayError {
         path: PathBuf,
     },
     /// A result would take the place of a file that no replay made.
-    #[error("{path}: already there, and not made by a replay: choose another place, or remove it", path = path.display())]
+    #[error("{path}: already there, and not made by a replay of this version: choose another place, or remove it", path = path.display())]
     Foreign {
         /// The file.
         path: PathBuf,

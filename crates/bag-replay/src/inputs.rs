@@ -1,7 +1,7 @@
 //! Which bags are meant, and how it shows that one is another now.
 
 use std::collections::HashSet;
-use std::fs;
+use std::fs::{self, DirEntry};
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
@@ -52,6 +52,8 @@ impl Input {
         } else {
             vec![path.clone(), log("-wal"), log("-journal")]
         };
+        // SQLite keeps its place in the log there, and changes it whenever it reads.
+        paths.retain(|path| !path.as_os_str().as_encoded_bytes().ends_with(b"-shm"));
         paths.sort();
         // What cannot be looked at cannot be read either, which is then said of the bag.
         let files = paths.into_iter().filter_map(|path| {
@@ -94,18 +96,18 @@ fn is_bag_folder(folder: &Path) -> bool {
     folder.join("metadata.yaml").exists()
 }
 
-/// Links are followed, but no folder is looked into twice.
+/// Links to bags are followed, and each bag is taken once, by its own name if that is found; other links to folders may lead anywhere.
 fn collect(
     folder: &Path,
     prefix: &str,
     seen: &mut HashSet<PathBuf>,
     found: &mut Vec<Input>,
 ) -> Result<(), ReplayError> {
-    if !seen.insert(fs::canonicalize(folder).map_err(ReplayError::io(folder))?) {
-        return Ok(());
-    }
     let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    for entry in entries.map_err(ReplayError::io(folder))? {
+    let mut entries = entries.map_err(ReplayError::io(folder))?;
+    let is_link = |entry: &DirEntry| entry.file_type().is_ok_and(|kind| kind.is_symlink());
+    entries.sort_by_key(|entry| (is_link(entry), entry.file_name()));
+    for entry in entries {
         let path = entry.path();
         let name = format!("{prefix}{}", stem(&path));
         if entry.file_name().as_encoded_bytes().starts_with(b".") {
@@ -114,8 +116,10 @@ fn collect(
         let is_bag = path.extension().is_some_and(|extension| extension == "mcap" || extension == "db3");
         let is_folder = path.is_dir();
         if is_folder && is_bag_folder(&path) || !is_folder && is_bag {
-            found.push(Input::new(path, name));
-        } else if is_folder {
+            if seen.insert(fs::canonicalize(&path).map_err(ReplayError::io(&path))?) {
+                found.push(Input::new(path, name));
+            }
+        } else if is_folder && !is_link(&entry) {
             collect(&path, &format!("{name}_"), seen, found)?;
         }
     }

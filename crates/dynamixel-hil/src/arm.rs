@@ -161,13 +161,15 @@ impl DynamixelArm {
         self.step_times.note(gap_s);
         let moves = self.controller.ends_at_s() > self.now_s;
         if gap_s > self.config.watch.pause_s && moves && self.fault.is_none() {
-            self.search = None;
             // The servos have long come to rest at the last goal: that is where to go on from, and not where the motion would be by now.
             let heard = (0..PAUSE_TRIES).any(|_| self.link.hear().is_ok());
             let [measured, _] = self.measured();
             let stands = if heard { measured } else { self.desired(self.now_s - 1.0 / self.config.rate_hz) };
             self.controller.rest_at(self.now_s, &stands);
-            self.fail(HilError::Paused { pause_s: gap_s });
+            // Who is silent is worth more to know.
+            if self.search.is_none() {
+                self.fail(HilError::Paused { pause_s: gap_s });
+            }
         }
         if let Some(mut search) = self.search.take() {
             match self.send().and_then(|()| search.ask(&mut self.link.bus)) {
@@ -320,6 +322,9 @@ impl Arm for DynamixelArm {
     }
 
     fn recover(&mut self) -> std::result::Result<(), Refused> {
+        if self.search.is_some() {
+            return Err(Refused::Faulty(HilError::GroupMissed.to_string()));
+        }
         if self.fault.is_none() {
             return Ok(());
         }

@@ -75,13 +75,24 @@ fn a_servo_that_disappears_and_comes_back() {
     bench.half_way();
     bench.simulation.with_bus(|bus| bus.faults_mut().servos[3].connection = Connection::NoData);
     // Who it is is asked between goals, one question a step: no goal comes late for it.
+    let mut searched = false;
     let words = (0..100).find_map(|_| {
         let before = bench.arm.counters().sent;
-        let fault = bench.step().fault;
+        let present = bench.step();
+        let fault = present.fault;
+        if fault.is_none() && bench.arm.recover().is_err() {
+            // Meanwhile nothing is over, and nothing else is taken up.
+            searched = true;
+            assert!(present.ends_at_s > present.now_s);
+            let refused = bench.arm.play(None, swing(&present.goal, &START)).unwrap_err();
+            assert_eq!(refused, Refused::Faulty("the servos did not all answer".into()));
+            bench.arm.stop();
+        }
         assert!(bench.arm.counters().sent - before <= 2, "more than goals and a question in one step");
         fault
     });
     assert_eq!(words.unwrap(), "servo 4 (elbow) does not answer");
+    assert!(searched);
     let present = bench.arm.present();
     assert!(present.desired[1].iter().any(|v| *v != 0.0), "it is still led to rest");
     bench.run(1.0);

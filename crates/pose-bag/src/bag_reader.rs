@@ -94,8 +94,10 @@ impl BagReader {
         for path in &self.files {
             let file = path.display().to_string();
             let mut lost = |messages_read, fault| {
-                if losses.len() < MAX_LOSSES {
-                    losses.push(named(&file, messages_read, fault));
+                let loss = named(&file, messages_read, fault);
+                let is_known = losses.last().is_some_and(|last: &BagError| last.to_string() == loss.to_string());
+                if losses.len() < MAX_LOSSES && !is_known {
+                    losses.push(loss);
                 }
             };
             match self.read_file(path, &file, &mut counts, visit, &mut lost) {

@@ -122,10 +122,10 @@ impl Linker<'_, '_> {
         Ok(())
     }
 
-    /// What was taken for something else than a message, or a chunk of them, shows in the number.
+    /// What was taken for something else than a message, or a chunk of them, shows in the number. Some tools copy chunks and count nothing.
     fn compare(&mut self, counted: u64) {
         let found = self.message_records;
-        if found != counted {
+        if found < counted {
             self.lost(format!("there are {found} messages where its statistics count {counted}"));
         }
     }

@@ -45,7 +45,7 @@ fn what_no_replay_made_is_not_replaced() {
     let run = bags.join("run");
     for output in [&bags, &other] {
         let (code, said, _) = replay(&[run.to_str().unwrap(), "-o", output.to_str().unwrap()]);
-        let sentence = "already there, and not made by a replay: choose another place, or remove it";
+        let sentence = "already there, and not made by a replay of this version: choose another place, or remove it";
         assert_eq!((code, said), (2, format!("reorder: {}: {sentence}\n", other.display())));
         assert!(fs::read(&other).unwrap() == before);
     }
@@ -57,15 +57,24 @@ fn what_no_replay_made_is_not_replaced() {
 }
 
 #[test]
-fn an_output_from_which_something_was_lost_is_made_anew() {
+fn an_output_is_made_anew_where_what_was_lost_may_be_found_now() {
     let folder = tempfile::tempdir().unwrap();
-    let (bag, output) = (folder.path().join("cut.mcap"), folder.path().join("out.mcap"));
-    arrays(&bag, "base_link", &[(1, 100), (2, 200)]);
-    let whole = fs::read(&bag).unwrap();
-    fs::write(&bag, &whole[..whole.len() - 20]).unwrap();
-    for _ in 0..2 {
-        let (code, _, found) = replay(&[bag.to_str().unwrap(), "-o", output.to_str().unwrap()]);
-        assert_eq!((code, found["bags"][0]["status"].as_str().unwrap()), (2, "done"), "the disk may give it next time");
+    let (cut, split) = (folder.path().join("cut.mcap"), folder.path().join("split"));
+    arrays(&cut, "base_link", &[(1, 100), (2, 200)]);
+    let whole = fs::read(&cut).unwrap();
+    fs::write(&cut, &whole[..whole.len() - 20]).unwrap();
+    arrays(&split, "base_link", &[(1, 100)]);
+    let metadata = fs::read_to_string(split.join("metadata.yaml")).unwrap();
+    let twice = metadata.replacen("- split_0.mcap", "- split_0.mcap\n  - split_1.mcap", 1);
+    assert_ne!(twice, metadata);
+    fs::write(split.join("metadata.yaml"), twice).unwrap();
+    for (bag, again) in [(&cut, "kept"), (&split, "done")] {
+        let output = folder.path().join("out.mcap");
+        for status in ["done", again] {
+            let (code, said, found) = replay(&[bag.to_str().unwrap(), "-o", output.to_str().unwrap()]);
+            assert_eq!((code, found["bags"][0]["status"].as_str().unwrap()), (2, status), "{said}");
+            assert_eq!(found["bags"][0]["lost"].as_array().unwrap().len(), 1, "{said}");
+        }
     }
 }
 
@@ -139,12 +148,14 @@ fn bags_behind_links_are_found_once() {
     arrays(&away.join("there"), "base_link", &[(1, 60)]);
     arrays(&away.join("day/then"), "base_link", &[(1, 70)]);
     symlink(away.join("there"), bags.join("linked")).unwrap();
+    symlink(bags.join("here"), bags.join("a_latest")).unwrap();
+    // What links lead to that are no bags may hold anything, outputs too.
     symlink(away.join("day"), bags.join("day")).unwrap();
     symlink(&bags, bags.join("round")).unwrap();
     let (code, said, found) = replay(&[bags.to_str().unwrap()]);
     assert_eq!(code, 0, "{said}");
-    let mut sizes: Vec<_> =
-        found["bags"].as_array().unwrap().iter().map(|bag| bag["sets"][0]["n"].as_u64().unwrap()).collect();
-    sizes.sort_unstable();
-    assert_eq!(sizes, [50, 60, 70]);
+    let name = |bag: &Value| bag["bag"].as_str().unwrap().rsplit('/').next().unwrap().to_owned();
+    let bags: Vec<_> =
+        found["bags"].as_array().unwrap().iter().map(|bag| (name(bag), bag["sets"][0]["n"].clone())).collect();
+    assert_eq!(bags, [("here".to_owned(), 50.into()), ("linked".to_owned(), 60.into())]);
 }
