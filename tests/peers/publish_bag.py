@@ -1,15 +1,16 @@
 """Publishes the PoseArray of a bag once, when somebody listens, and leaves when it has been answered.
 
-    publish_bag.py tests/data/lasa_sine [--joint-state home | --positions Q1 ... Q6 | --await-robot] [--subscribers N]
+    publish_bag.py tests/data/lasa_sine [--joint-state home | --positions Q1 ... Q6 | --await-robot] [--subscribers N] [--before-viperx]
 
 With a joint state, sensor_msgs/JointState goes out at 50 Hz on /joint_states, from before the poses
 until a report answers them, as a robot's driver would. With --await-robot the poses wait until the node
-has heard of a robot. Prints one JSON line. Exit codes: 0 answered,
+has heard of a robot. The recordings were drawn before a UR5e; --before-viperx moves them to where a ViperX reaches them. Prints one JSON line. Exit codes: 0 answered,
 2 bad input, 3 nobody listened, acknowledged or answered in time.
 """
 
 import argparse
 import json
+import math
 import sys
 import time
 
@@ -25,6 +26,10 @@ from leave import leave
 from recorded_poses import read_pose_array
 
 TOPIC = "/reorder/poses"
+# The middle of the board in the recordings, and where it stands before the ViperX, which is smaller.
+BOARD_M = (-0.10, 0.55, 0.42)
+VIPERX_FRAME = "vx300s/base_link"
+BOARD_BEFORE_VIPERX_M = (0.33, 0.0, 0.20)
 JOINT_STATE_PERIOD_S = 0.02
 # Best effort: one of them may be lost, not all of them.
 JOINT_STATES_BEFORE_POSES = 5
@@ -46,6 +51,7 @@ def arguments():
     parser.add_argument("bag")
     parser.add_argument("--subscribers", type=int, default=1, help="listeners to the poses to wait for")
     parser.add_argument("--timeout", type=float, default=30.0, help="seconds")
+    parser.add_argument("--before-viperx", action="store_true", help="in vx300s/base_link, on a board that a ViperX reaches")
     state = parser.add_mutually_exclusive_group()
     state.add_argument("--joint-state", choices=CONFIGURATIONS_RAD)
     state.add_argument("--positions", type=float, nargs=6, metavar="RAD", help="base to tool")
@@ -60,6 +66,8 @@ def main():
     except Exception as error:  # rosbags raises many kinds; each says what is wrong with the bag
         print(f"{options.bag} cannot be read: {str(error).rstrip('.')}.", file=sys.stderr)
         return 2
+    if options.before_viperx:
+        frame_id, rows = VIPERX_FRAME, [before_viperx(row) for row in rows]
     positions = options.positions or CONFIGURATIONS_RAD.get(options.joint_state)
     rclpy.init()
     return publish(rclpy.create_node("bag_publisher"), options, frame_id, rows, positions)
@@ -147,6 +155,30 @@ class JointStates:
 
     def settled(self):
         return self.sent >= JOINT_STATES_BEFORE_POSES
+
+
+def before_viperx(row):
+    """The board turned by a quarter from the UR5e's side to the ViperX's front, and the pen from the z axis of the one tool to the x
+    axis of the other, as dynamixel-hil draws."""
+    x, y, z = (p - middle for p, middle in zip(row[:3], BOARD_M))
+    place = [p + middle for p, middle in zip((y, -x, z), BOARD_BEFORE_VIPERX_M)]
+    half = math.sqrt(0.5)
+    quarter = (0.0, 0.0, -half, half)
+    # Columns: the ViperX tool's x (out of the gripper), y and z in the UR5e's, (0, 0, 1), (-1, 0, 0) and (0, -1, 0).
+    tool = (0.5, -0.5, 0.5, 0.5)
+    return (*place, *product(product(quarter, row[3:]), tool))
+
+
+def product(a, b):
+    """Of quaternions x, y, z, w."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
 
 
 def pose(row):

@@ -8,6 +8,7 @@ use r2r::control_msgs::action::FollowJointTrajectory as Follow;
 use r2r::control_msgs::msg::JointTolerance;
 use r2r::{ActionServerGoal, ActionServerGoalRequest};
 
+use crate::log::Log;
 use crate::message::{header, point, trajectory};
 use crate::pace::Clock;
 use crate::{SharedArm, lock};
@@ -20,24 +21,24 @@ const GOAL_TOLERANCE: f64 = 0.01;
 const GOAL_TIME_S: f64 = 1.0;
 
 /// Plays what is asked for, or rejects it, and sees to its end on a task of its own.
-pub(crate) fn serve(request: ActionServerGoalRequest<Follow::Action>, arm: SharedArm, clock: Clock, logger: &str) {
+pub(crate) fn serve(request: ActionServerGoalRequest<Follow::Action>, arm: SharedArm, clock: Clock, log: &Log) {
     let wanted = &request.goal.trajectory;
     let starts_at_s = clock.seconds(&wanted.header.stamp);
     let played = lock(&arm).play(starts_at_s, trajectory(wanted));
-    let logger = logger.to_owned();
+    let log = log.clone();
     match played {
         Err(why) => {
-            r2r::log_error!(&logger, "a goal is rejected ({}): {why}", code(&why));
+            log.error(format_args!("a goal is rejected ({}): {why}", code(&why)));
             if let Err(error) = request.reject() {
-                r2r::log_error!(&logger, "rejecting failed: {error}");
+                log.error(format_args!("rejecting failed: {error}"));
             }
         }
         Ok(number) => match request.accept() {
-            Err(error) => r2r::log_error!(&logger, "accepting failed: {error}"),
+            Err(error) => log.error(format_args!("accepting failed: {error}")),
             Ok((goal, cancels)) => {
                 tokio::spawn(async move {
                     if let Err(error) = watch(goal, cancels, number, arm, clock).await {
-                        r2r::log_error!(&logger, "a goal is lost: {error}");
+                        log.error(format_args!("a goal is lost: {error}"));
                     }
                 });
             }

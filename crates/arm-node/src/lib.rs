@@ -10,10 +10,12 @@
 //! | `~/recover` service | std_srvs/Trigger: go on after a fault |
 //! | `joint_states` out | sensor_msgs/JointState |
 //! | `robot_description` out | std_msgs/String, latched |
+//! | `/rosout` out | rcl_interfaces/Log: goals that are rejected, faults, a pace that is missed |
 //! | `/clock` out | rosgraph_msgs/Clock, where the arm has a time of its own |
 
 mod action;
 mod error;
+mod log;
 mod message;
 mod pace;
 mod parameters;
@@ -32,6 +34,7 @@ use r2r::{Context, Node, QosProfile, ServiceRequest};
 use tokio::signal::unix::{SignalKind, signal};
 
 use crate::error::NodeError;
+use crate::log::Log;
 use crate::pace::{Clock, Pace};
 pub use crate::parameters::{Parameters, number};
 
@@ -122,7 +125,7 @@ async fn serve(name: &str, open: fn(Parameters) -> Result<Opened, String>) -> Re
     let opened = opened.map_err(|panic| NodeError::Middleware(panic.to_string()))?;
     let Opened { arm, urdf, pacing, says } = opened.map_err(NodeError::Parameters)?;
     let arm: SharedArm = Arc::new(Mutex::new(arm));
-    let logger = node.logger().to_owned();
+    let log = Log::create(&mut node)?;
 
     let latched = QosProfile::default().reliable().transient_local().keep_last(1);
     let description = node.create_publisher::<r2r::std_msgs::msg::String>("robot_description", latched)?;
@@ -130,7 +133,7 @@ async fn serve(name: &str, open: fn(Parameters) -> Result<Opened, String>) -> Re
     let mut goals = node.create_action_server("joint_trajectory_controller/follow_joint_trajectory")?;
     let mut recoveries = node.create_service::<Trigger::Service>("~/recover", QosProfile::services_default())?;
     let clock = Clock::new(pacing.clock);
-    let pace = Pace::create(&mut node, &pacing, clock.clone(), Arc::clone(&arm))?;
+    let pace = Pace::create(&mut node, &pacing, clock.clone(), Arc::clone(&arm), log.clone())?;
     description.publish(&r2r::std_msgs::msg::String { data: urdf })?;
 
     let stop = Arc::new(AtomicBool::new(false));
@@ -147,7 +150,7 @@ async fn serve(name: &str, open: fn(Parameters) -> Result<Opened, String>) -> Re
         let stop = Arc::clone(&stop);
         move || pace.run(&stop)
     });
-    r2r::log_info!(&logger, "{says}");
+    log.info(says);
 
     let ended = loop {
         tokio::select! {
@@ -161,11 +164,11 @@ async fn serve(name: &str, open: fn(Parameters) -> Result<Opened, String>) -> Re
                 let starts_at_s = clock.seconds(&message.header.stamp);
                 let played = lock(&arm).play(starts_at_s, message::trajectory(&message));
                 if let Err(why) = played {
-                    r2r::log_error!(&logger, "a trajectory is refused: {why}");
+                    log.error(format_args!("a trajectory is refused: {why}"));
                 }
             }
-            Some(request) = goals.next() => action::serve(request, Arc::clone(&arm), clock.clone(), &logger),
-            Some(request) = recoveries.next() => recover(request, Arc::clone(&arm), logger.clone()),
+            Some(request) = goals.next() => action::serve(request, Arc::clone(&arm), clock.clone(), &log),
+            Some(request) = recoveries.next() => recover(request, Arc::clone(&arm), log.clone()),
         }
     };
     come_to_rest(&arm).await;
@@ -195,13 +198,13 @@ async fn come_to_rest(arm: &SharedArm) {
 }
 
 /// Has the arm go on, which may take a moment, and answers.
-fn recover(request: ServiceRequest<Trigger::Service>, arm: SharedArm, logger: String) {
+fn recover(request: ServiceRequest<Trigger::Service>, arm: SharedArm, log: Log) {
     tokio::task::spawn_blocking(move || {
         let recovered = lock(&arm).recover();
         let success = recovered.is_ok();
         let message = recovered.err().map(|why| why.to_string()).unwrap_or_default();
         if let Err(error) = request.respond(Trigger::Response { success, message }) {
-            r2r::log_error!(&logger, "answering ~/recover failed: {error}");
+            log.error(format_args!("answering ~/recover failed: {error}"));
         }
     });
 }

@@ -10,9 +10,13 @@ use r2r::sensor_msgs::msg::JointState;
 use r2r::{Node, Publisher, QosProfile};
 
 use crate::error::NodeError;
+use crate::log::Log;
 use crate::message::{joint_state, stamp_ns, time};
 use crate::{Pacing, SharedArm, lock};
 
+/// So often it is looked whether the arm went on in time, and this part of the time is in time.
+const LOOKS_BACK: Duration = Duration::from_secs(5);
+const IN_TIME: f64 = 0.9;
 /// On `/clock` time begins at 1 s: a stamp of zero means that there is none.
 const CLOCK_BEGINS_NS: i64 = 1_000_000_000;
 
@@ -50,13 +54,34 @@ impl Clock {
     }
 }
 
+/// How far the arm fell behind of late.
+#[derive(Default)]
+struct Lag {
+    since: Option<Instant>,
+    behind: Duration,
+}
+
+impl Lag {
+    /// Once a while: which part of the time the arm went on in, where that is worth a word.
+    fn told(&mut self, now: Instant) -> Option<f64> {
+        let since = *self.since.get_or_insert(now);
+        let while_s = now.duration_since(since).as_secs_f64();
+        if while_s < LOOKS_BACK.as_secs_f64() {
+            return None;
+        }
+        let part = 1.0 - self.behind.as_secs_f64() / while_s;
+        *self = Self { since: Some(now), behind: Duration::ZERO };
+        (part < IN_TIME).then_some(part)
+    }
+}
+
 /// Lets the arm's time pass, and tells where the joints are.
 pub(crate) struct Pace {
     arm: SharedArm,
     clock: Clock,
     states: Publisher<JointState>,
     clock_messages: Option<Publisher<ClockMessage>>,
-    logger: String,
+    log: Log,
     speed: f64,
     /// Time between two joint states, in s of the arm's clock.
     period_s: f64,
@@ -66,7 +91,13 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    pub(crate) fn create(node: &mut Node, pacing: &Pacing, clock: Clock, arm: SharedArm) -> Result<Self, NodeError> {
+    pub(crate) fn create(
+        node: &mut Node,
+        pacing: &Pacing,
+        clock: Clock,
+        arm: SharedArm,
+        log: Log,
+    ) -> Result<Self, NodeError> {
         let states = node.create_publisher("joint_states", QosProfile::default().reliable().keep_last(10))?;
         let clock_qos = QosProfile::default().best_effort().keep_last(1);
         let clock_messages = pacing.clock.then(|| node.create_publisher("/clock", clock_qos)).transpose()?;
@@ -75,14 +106,14 @@ impl Pace {
             (arm.joint_names().to_vec(), Duration::from_secs_f64(arm.most_behind_s()))
         };
         let (speed, period_s) = (pacing.speed, 1.0 / pacing.rate_hz);
-        let logger = node.logger().to_owned();
-        Ok(Self { arm, clock, states, clock_messages, logger, speed, period_s, most_behind, names })
+        Ok(Self { arm, clock, states, clock_messages, log, speed, period_s, most_behind, names })
     }
 
     /// Lets time pass until `stop` says so.
     pub(crate) fn run(self, stop: &AtomicBool) -> Result<(), NodeError> {
         let mut began = Instant::now();
         let (mut fault, mut is_heard) = (None, true);
+        let mut lag = Lag::default();
         for tick in 0_u64.. {
             if stop.load(Ordering::Relaxed) {
                 break;
@@ -95,6 +126,13 @@ impl Pace {
             if now > due + self.most_behind {
                 began += now - due;
                 self.clock.slip(now - due);
+                lag.behind += now - due;
+            }
+            if let Some(part) = lag.told(now) {
+                let percent = 100.0 * part;
+                self.log.warn(format_args!(
+                    "the arm goes at {percent:.0} % of its planned speed: this computer is too busy to lead it in time"
+                ));
             }
             let present = {
                 let mut arm = lock(&self.arm);
@@ -103,8 +141,8 @@ impl Pace {
             };
             if present.fault != fault {
                 match &present.fault {
-                    Some(why) => r2r::log_error!(&self.logger, "the arm has stopped: {why}"),
-                    None => r2r::log_info!(&self.logger, "the arm goes on"),
+                    Some(why) => self.log.error(format_args!("the arm has stopped: {why}")),
+                    None => self.log.info("the arm goes on"),
                 }
                 fault = present.fault;
             }
@@ -115,12 +153,29 @@ impl Pace {
             // An arm in motion must be led on whoever hears of it.
             match told.and_then(|()| self.states.publish(&state)) {
                 Err(error) if is_heard => {
-                    r2r::log_error!(&self.logger, "joint states cannot be published: {error}");
+                    self.log.error(format_args!("joint states cannot be published: {error}"));
                     is_heard = false;
                 }
                 told => is_heard = told.is_ok(),
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arm_that_falls_behind_is_told_of_once_a_while() {
+        let begin = Instant::now();
+        let mut lag = Lag::default();
+        assert_eq!(lag.told(begin), None);
+        lag.behind = Duration::from_secs(3);
+        assert_eq!(lag.told(begin + LOOKS_BACK / 2), None, "not yet");
+        let part = lag.told(begin + 2 * LOOKS_BACK).unwrap();
+        assert!((part - 0.7).abs() < 1e-9, "{part}");
+        assert_eq!(lag.told(begin + 4 * LOOKS_BACK), None, "it was in time again");
     }
 }

@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use crate::bus::Bus;
-use crate::config::Config;
+use crate::config::{Config, Servo};
 use crate::error::{HilError, Result};
 use crate::model::Model;
 use crate::register::{
     DRIVE_MODE, GOAL_POSITION, MAX_POSITION_LIMIT, MIN_POSITION_LIMIT, Mode, OPERATING_MODE, POSITION_D_GAIN,
     POSITION_I_GAIN, POSITION_P_GAIN, PRESENT_POSITION, PROFILE_ACCELERATION, PROFILE_VELOCITY, RETURN_DELAY_TIME,
-    Register, SECONDARY_ID, TORQUE_ENABLE, VELOCITY_UNIT_RAD_S, within_a_turn,
+    Register, SECONDARY_ID, TORQUE_ENABLE, VELOCITY_UNIT_RAD_S, angle_rad, within_a_turn,
 };
 use crate::servo_state::ServoState;
 
@@ -42,6 +42,20 @@ pub fn identify(bus: &mut Bus, config: &Config) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Where a servo stands, in rad of its joint, as the arm will see it: mirrored, if the servo does not yet count as the configuration has
+/// it. `None` of a servo without a joint.
+///
+/// # Errors
+/// As [`Bus::read`].
+pub fn joint_position(bus: &mut Bus, servo: &Servo) -> Result<Option<f64>> {
+    if servo.joint.is_none() {
+        return Ok(None);
+    }
+    let is_reversed = bus.read(servo.id, DRIVE_MODE)? & REVERSED != 0;
+    let angle = angle_rad(within_a_turn(bus.read(servo.id, PRESENT_POSITION)? as i32));
+    Ok(Some(if is_reversed == servo.reversed { angle } else { -angle } + servo.offset_rad))
 }
 
 /// Has servos that latched an error start anew, and waits for them. One that holds in spite of it (low voltage) would drop the arm.

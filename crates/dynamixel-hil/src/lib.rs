@@ -45,7 +45,7 @@ mod trim;
 mod watch;
 
 pub use arm::{Clock, DynamixelArm};
-pub use bring_up::identify;
+pub use bring_up::{identify, joint_position};
 pub use bus::{Bus, Counters, GroupRead, GroupWrite};
 pub use config::{Config, SIMULATED_PORT, Servo, Watch};
 pub use dynamixel_emulator as emulator;

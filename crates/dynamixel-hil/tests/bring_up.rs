@@ -5,11 +5,11 @@ mod support;
 
 use std::collections::BTreeMap;
 
-use dynamixel_hil::Bus;
 use dynamixel_hil::emulator::item;
 use dynamixel_hil::planner::Arm;
 use dynamixel_hil::register::{HOMING_OFFSET, MAX_POSITION_LIMIT, SECONDARY_ID};
-use support::{Lockstep, START, simulation, swing};
+use dynamixel_hil::{Bus, joint_position};
+use support::{Lockstep, START, config, robot, simulation, swing};
 
 #[test]
 fn servos_are_set_up_whatever_they_were_before() {
@@ -35,6 +35,29 @@ fn servos_are_set_up_whatever_they_were_before() {
     // 2 rad/s in units of 0.229 rev/min.
     let others = [item::POSITION_P_GAIN, item::PROFILE_VELOCITY, item::PROFILE_ACCELERATION, item::TORQUE_ENABLE];
     assert_eq!(of(7, &others), [800, 84, 0, 1]);
+}
+
+/// Before and after Drive Mode is set, which mirrors what a servo tells.
+#[test]
+fn joints_are_where_the_arm_will_see_them() {
+    let simulation = simulation();
+    for _ in 0..2 {
+        let mut bus = Bus::open(&simulation.path(), 1_000_000, 5.0, BTreeMap::new()).unwrap();
+        let (config, robot) = (config(), robot());
+        let truth = simulation.view().now().position;
+        for servo in &config.servos {
+            let found = joint_position(&mut bus, servo).unwrap();
+            let place =
+                servo.joint.as_ref().and_then(|joint| robot.chain.joint_names().iter().position(|n| n == joint));
+            assert_eq!(found.is_some(), place.is_some(), "servo {}", servo.id);
+            if let Some((found, place)) = found.zip(place) {
+                // A pulse is 0.0015 rad; gears and links give some more under the arm's weight.
+                assert!((found - truth[place]).abs() < 0.03, "servo {}: {found}, {}", servo.id, truth[place]);
+            }
+        }
+        drop(bus);
+        Lockstep::on(simulation.clone()).unwrap().run(0.1);
+    }
 }
 
 /// Drive Mode cannot be written under torque: an arm that another driver left holding must not fall because of ours.

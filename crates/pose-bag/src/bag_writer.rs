@@ -246,7 +246,7 @@ pub fn library_of(path: impl AsRef<Path>) -> Option<String> {
     let mut start = Vec::new();
     File::open(path).ok()?.take(LONGEST_HEADER).read_to_end(&mut start).ok()?;
     // Behind the magic, the kind of the record and its length stand two strings, each behind its length: profile and library.
-    let record = start.strip_prefix(&mcap::MAGIC[..])?.strip_prefix(&[mcap::records::op::HEADER])?.get(8..)?;
+    let record = start.strip_prefix(mcap::MAGIC)?.strip_prefix(&[mcap::records::op::HEADER])?.get(8..)?;
     let (_, rest) = prefixed(record)?;
     let (library, _) = prefixed(rest)?;
     String::from_utf8(library.to_vec()).ok()

@@ -5,7 +5,7 @@ use std::error::Error;
 
 use dynamixel_hil::emulator::Timing;
 use dynamixel_hil::register::{PRESENT_INPUT_VOLTAGE, PRESENT_POSITION, PRESENT_TEMPERATURE, TORQUE_ENABLE};
-use dynamixel_hil::{Bus, Config, SIMULATED_PORT, Simulation, identify};
+use dynamixel_hil::{Bus, Config, SIMULATED_PORT, Simulation, identify, joint_position};
 use serde_json::{Value, json};
 
 /// Reads, and writes nothing.
@@ -17,6 +17,7 @@ pub(crate) fn check(config: &Config) -> Result<Value, Box<dyn Error>> {
         let mut read = |register| bus.read(servo.id, register);
         let (torque, position) = (read(TORQUE_ENABLE)?, read(PRESENT_POSITION)? as i32);
         let (voltage, temperature) = (read(PRESENT_INPUT_VOLTAGE)?, read(PRESENT_TEMPERATURE)?);
+        let position_rad = joint_position(&mut bus, servo)?;
         let errors = bus.hardware_errors(servo.id)?;
         servos.push(json!({
             "id": servo.id,
@@ -24,6 +25,8 @@ pub(crate) fn check(config: &Config) -> Result<Value, Box<dyn Error>> {
             "model": servo.model.name(),
             "torque": torque != 0,
             "position_pulses": position,
+            "joint": servo.joint,
+            "position_rad": position_rad,
             "voltage_v": f64::from(voltage) / 10.0,
             "temperature_c": temperature,
             "errors": if errors.0 == 0 { Value::Null } else { errors.to_string().into() },
