@@ -116,7 +116,8 @@ fn collect(
         let is_bag = path.extension().is_some_and(|extension| extension == "mcap" || extension == "db3");
         let is_folder = path.is_dir();
         if is_folder && is_bag_folder(&path) || !is_folder && is_bag {
-            if seen.insert(fs::canonicalize(&path).map_err(ReplayError::io(&path))?) {
+            // A link to nothing is a broken bag, and no reason to leave the others.
+            if seen.insert(fs::canonicalize(&path).unwrap_or_else(|_| path.clone())) {
                 found.push(Input::new(path, name));
             }
         } else if is_folder && !is_link(&entry) {
@@ -152,5 +153,17 @@ mod tests {
         fs::write(folder.join("x.db3-wal"), "longer log")?;
         assert_ne!(input(), with_log);
         fs::remove_dir_all(&folder)
+    }
+    #[test]
+    fn a_link_to_nothing_leaves_the_other_bags() -> std::io::Result<()> {
+        let folder = std::env::temp_dir().join(format!("reorder-links-{}", std::process::id()));
+        fs::create_dir_all(&folder)?;
+        fs::write(folder.join("a.mcap"), "a bag")?;
+        std::os::unix::fs::symlink(folder.join("gone"), folder.join("b.mcap"))?;
+        let found =
+            find(std::slice::from_ref(&folder)).map(|bags| bags.into_iter().map(|bag| bag.name).collect::<Vec<_>>());
+        fs::remove_dir_all(&folder)?;
+        assert_eq!(found.ok(), Some(vec!["a".to_owned(), "b".to_owned()]));
+        Ok(())
     }
 }
